@@ -11,7 +11,6 @@ foreach(test
   unit/analysis/Contraction.ALongCycleIsDecidedByItsProduct
   unit/analysis/Contraction.RandomSystemsAreDecidedRight
   unit/analysis/Counts.AHundredThousandStepsAreExact
-  unit/analysis/Counts.ApproximateCountsOverflowToInfinityAndStayWithinMemory
   unit/analysis/Counts.LongNumbersTakeLittleMemoryAtATime
   unit/analysis/Dimension.OfAVeryLargeComponentEndsSoon
   unit/detail/Coverage.CyclesShareABudget

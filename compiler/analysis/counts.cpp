@@ -230,37 +230,4 @@ std::optional<std::string> count_leaves(const Graph& graph, const Components& co
     return digits;
 }
 
-std::vector<std::vector<double>> approximate_leaf_counts(const Graph& graph, const Components& components,
-                                                         unsigned steps) {
-    const std::size_t n = graph.objects.size();
-    std::vector<double> row(n, 0.0);
-    std::vector<double> every_level(n, 0.0); // what does not depend on the level
-    for (const ObjectId id : ending_first(components)) {
-        const Object& object = graph.objects[id];
-        bool any = false;
-        every_level[id] = object.primitive ? 1
-                          : object.run     ? static_cast<double>(object.run->part_count())
-                                           : 0;
-        for (const Instance& instance : object.instances) {
-            if (components.unending[instance.master]) continue;
-            every_level[id] += row[instance.master];
-            any = true;
-        }
-        row[id] = components.unending[id] && !any ? 1 : every_level[id];
-        if (components.unending[id] && object.terminal) row[id] = row[object.terminal->master];
-    }
-    std::vector<std::vector<double>> rows{std::move(row)};
-    if (!components.any_cycle()) return rows;
-    const std::size_t most_rows =
-        std::max<std::size_t>(1, max_approximate_counts / std::max<std::size_t>(n, 1));
-    while (rows.size() <= steps && rows.size() < most_rows) {
-        std::vector<double> deeper = every_level;
-        for (ObjectId id = 0; id < n; ++id)
-            for (const Instance& instance : graph.objects[id].instances)
-                if (components.unending[instance.master]) deeper[id] += rows.back()[instance.master];
-        rows.push_back(std::move(deeper));
-    }
-    return rows;
-}
-
 } // namespace graftal

@@ -20,13 +20,6 @@ inline constexpr unsigned max_counted_digits = 1'000'000;
 std::optional<std::string> count_leaves(const Graph& graph, const Components& components,
                                         std::optional<unsigned> steps);
 
-/// The same counts in floating point, for planning: result[s][v] leaves of object v with s levels left, for
-/// s = 0 .. steps (one row for an ending graph); infinity where they overflow. The table ends early at
-/// `max_approximate_counts` numbers: the last row then stands for the deeper ones too.
-inline constexpr std::size_t max_approximate_counts = std::size_t{1} << 24;
-std::vector<std::vector<double>> approximate_leaf_counts(const Graph& graph, const Components& components,
-                                                         unsigned steps);
-
 /// Similarity dimension of the limit set: the s at which [sum r_e^s] over the graph has spectral radius 1,
 /// the largest over components reachable from the root. Nothing for ending graphs, or where an instance
 /// within a cycle is no similarity. Exact where the open set condition holds, an upper bound otherwise.

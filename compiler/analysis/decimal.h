@@ -2,12 +2,12 @@
 
 #include <string>
 
-#include <boost/multiprecision/cpp_int.hpp>
+#include "compiler/support/big_count.h"
 
 namespace graftal {
 
 /// The decimal digits of a non-negative number, by halving: a million digits in about a second, where the
 /// digit-by-digit way of the library takes minutes.
-std::string to_decimal(const boost::multiprecision::cpp_int& number);
+std::string to_decimal(const BigCount& number);
 
 } // namespace graftal

@@ -119,6 +119,7 @@ class Builder {
         CutNode node;
         node.name = name_of(primitive);
         node.primitive = primitive;
+        node.unbounded = bounds.unbounded;
         node.cullable = false;
         node.ball = bounds.ball;
         node.node_from_proxy = ellipsoid_in(bounds.box);

@@ -48,7 +48,7 @@ struct CutNode {
     double terminal_px = 0;              ///< as the object's (graph.h)
     bool unending = false;
     bool solid = false;      ///< some way leads to a primitive
-    bool unbounded = false;  ///< holds a plane: always expanded into placements
+    bool unbounded = false;  ///< is a plane or holds one: always expanded into placements
     bool sealed = false;     ///< leads through a singular map: never expanded, POV-Ray could not place it
     bool cullable = true;    ///< worth a proxy; a handful of primitives is drawn as it is
     bool textured = false;   ///< some material within it has a picture

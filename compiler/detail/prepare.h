@@ -27,7 +27,8 @@ struct PreparedCut {
     std::unique_ptr<ShellStore> shells = std::make_unique<ShellStore>(); ///< of this graph
 };
 
-/// Runs the passes for detail, which `after_each` sees. Requires what cut_graph() requires. O(graph).
+/// Runs the passes for detail, which `after_each` sees. Requires a verified graph whose contraction is proved
+/// or acyclic. O(graph).
 PreparedCut prepare_cut(const Graph& graph, const Components& components,
                         const std::vector<ObjectBounds>& bounds, const PrepareOptions& options,
                         const Control& control = no_control(), const PassObserver& after_each = {});

@@ -16,7 +16,7 @@ namespace graftal {
 
 namespace {
 
-class AttractionPoints : public Surroundings {
+class AttractionPoints : public GrowthEnvironment {
   public:
     AttractionPoints(const EnvironmentSettings& settings, std::vector<Vec3> points, Diagnostics& diagnostics)
         : points_(std::move(points)), influence_(settings.influence), kill_(settings.kill),
@@ -71,7 +71,8 @@ class AttractionPoints : public Surroundings {
 } // namespace
 
 /// The points lie evenly in the regions, by chance.
-std::unique_ptr<Surroundings> make_points(const EnvironmentSettings& settings, Diagnostics& diagnostics) {
+std::unique_ptr<GrowthEnvironment> make_points(const EnvironmentSettings& settings,
+                                               Diagnostics& diagnostics) {
     Vec3 low(std::numeric_limits<double>::infinity()), high = -low;
     for (const EnvironmentRegion& region : settings.regions) {
         const bool box = region.kind == EnvironmentRegion::Kind::box;

@@ -12,10 +12,10 @@
 namespace graftal {
 
 /// A cell of space, by whole numbers.
-using CellPlace = std::array<std::int64_t, 3>;
+using GridCell = std::array<std::int64_t, 3>;
 
 struct CellHash {
-    std::size_t operator()(const CellPlace& cell) const {
+    std::size_t operator()(const GridCell& cell) const {
         std::uint64_t hash = 0;
         for (const std::int64_t k : cell)
             hash = mixed(hash, static_cast<std::uint64_t>(k));
@@ -24,8 +24,8 @@ struct CellHash {
 };
 
 /// The cell of this size that holds a place; requires a positive size. Cells beyond 1e15 are one.
-inline CellPlace cell_of(Vec3 place, double size) {
-    CellPlace cell{};
+inline GridCell cell_of(Vec3 place, double size) {
+    GridCell cell{};
     for (int axis = 0; axis < 3; ++axis) {
         constexpr double farthest = 1e15;
         const double k = std::floor(place[axis] / size);
@@ -46,7 +46,7 @@ class CellGrid {
 
     /// Calls look(thing) for all within `size` of a place, and for some others, until it says false.
     template<typename Look> void near(Vec3 place, const Look& look) const {
-        const CellPlace middle = cell_of(place, size_);
+        const GridCell middle = cell_of(place, size_);
         look_between({middle[0] - 1, middle[1] - 1, middle[2] - 1},
                      {middle[0] + 1, middle[1] + 1, middle[2] + 1}, look);
     }
@@ -58,7 +58,7 @@ class CellGrid {
 
   private:
     template<typename Look>
-    void look_between(const CellPlace& first, const CellPlace& last, const Look& look) const {
+    void look_between(const GridCell& first, const GridCell& last, const Look& look) const {
         for (std::int64_t x = first[0]; x <= last[0]; ++x)
             for (std::int64_t y = first[1]; y <= last[1]; ++y)
                 for (std::int64_t z = first[2]; z <= last[2]; ++z) {
@@ -70,7 +70,7 @@ class CellGrid {
     }
 
     double size_;
-    std::unordered_map<CellPlace, std::vector<std::uint32_t>, CellHash> cells_;
+    std::unordered_map<GridCell, std::vector<std::uint32_t>, CellHash> cells_;
 };
 
 } // namespace graftal

@@ -20,7 +20,7 @@ double value_or_0(const EnvironmentQuery& query, std::size_t k) {
 
 /// Both kinds: `own_radii`: the strength of a query is the radius of its disc; else all keep the distance of
 /// the statement.
-class Competition : public Surroundings {
+class Competition : public GrowthEnvironment {
   public:
     Competition(const EnvironmentSettings& settings, bool own_radii, Diagnostics& diagnostics)
         : radius_(settings.radius), flat_(settings.flat), own_radii_(own_radii),
@@ -70,11 +70,12 @@ class Competition : public Surroundings {
 
 } // namespace
 
-std::unique_ptr<Surroundings> make_crowd(const EnvironmentSettings& settings, Diagnostics& diagnostics) {
+std::unique_ptr<GrowthEnvironment> make_crowd(const EnvironmentSettings& settings, Diagnostics& diagnostics) {
     return std::make_unique<Competition>(settings, false, diagnostics);
 }
 
-std::unique_ptr<Surroundings> make_rivals(const EnvironmentSettings& settings, Diagnostics& diagnostics) {
+std::unique_ptr<GrowthEnvironment> make_rivals(const EnvironmentSettings& settings,
+                                               Diagnostics& diagnostics) {
     return std::make_unique<Competition>(settings, true, diagnostics);
 }
 

@@ -10,7 +10,7 @@ namespace graftal {
 
 namespace {
 
-class Regions : public Surroundings {
+class Regions : public GrowthEnvironment {
   public:
     explicit Regions(const EnvironmentSettings& settings) : regions_(settings.regions) {}
 
@@ -60,12 +60,12 @@ bool EnvironmentBudget::take(std::uint64_t work) {
     return false;
 }
 
-std::unique_ptr<Surroundings> make_regions(const EnvironmentSettings& settings) {
+std::unique_ptr<GrowthEnvironment> make_regions(const EnvironmentSettings& settings) {
     return std::make_unique<Regions>(settings);
 }
 
-std::unique_ptr<Surroundings> make_environment(const EnvironmentSettings& settings,
-                                               Diagnostics& diagnostics) {
+std::unique_ptr<GrowthEnvironment> make_environment(const EnvironmentSettings& settings,
+                                                    Diagnostics& diagnostics) {
     switch (settings.kind) {
     case EnvironmentSettings::Kind::crowd:
         return make_crowd(settings, diagnostics);

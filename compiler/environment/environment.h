@@ -68,9 +68,9 @@ inline constexpr std::size_t max_shadow_voxels = 20'000'000;
 /// Points of one model.
 inline constexpr std::uint32_t max_attraction_points = 1'000'000;
 
-class Surroundings {
+class GrowthEnvironment {
   public:
-    virtual ~Surroundings() = default;
+    virtual ~GrowthEnvironment() = default;
 
     /// Puts the answers in place of the values; a query with fewer values hears as much as it has room for.
     /// Nothing of chance beyond the seed, nothing of the order of the queries. False after an error.
@@ -78,7 +78,8 @@ class Surroundings {
 };
 
 /// `diagnostics` must outlive it. Null after an error.
-std::unique_ptr<Surroundings> make_environment(const EnvironmentSettings& settings, Diagnostics& diagnostics);
+std::unique_ptr<GrowthEnvironment> make_environment(const EnvironmentSettings& settings,
+                                                    Diagnostics& diagnostics);
 
 /// Counts what is looked at.
 class EnvironmentBudget {
@@ -98,12 +99,13 @@ class EnvironmentBudget {
 };
 
 // One for each kind; see EnvironmentSettings::Kind.
-std::unique_ptr<Surroundings> make_regions(const EnvironmentSettings& settings);
-std::unique_ptr<Surroundings> make_crowd(const EnvironmentSettings& settings, Diagnostics& diagnostics);
-std::unique_ptr<Surroundings> make_rivals(const EnvironmentSettings& settings, Diagnostics& diagnostics);
-std::unique_ptr<Surroundings> make_shade(const EnvironmentSettings& settings, Diagnostics& diagnostics);
-std::unique_ptr<Surroundings> make_shadows(const EnvironmentSettings& settings, Diagnostics& diagnostics);
+std::unique_ptr<GrowthEnvironment> make_regions(const EnvironmentSettings& settings);
+std::unique_ptr<GrowthEnvironment> make_crowd(const EnvironmentSettings& settings, Diagnostics& diagnostics);
+std::unique_ptr<GrowthEnvironment> make_rivals(const EnvironmentSettings& settings, Diagnostics& diagnostics);
+std::unique_ptr<GrowthEnvironment> make_shade(const EnvironmentSettings& settings, Diagnostics& diagnostics);
+std::unique_ptr<GrowthEnvironment> make_shadows(const EnvironmentSettings& settings,
+                                                Diagnostics& diagnostics);
 /// Null after an error.
-std::unique_ptr<Surroundings> make_points(const EnvironmentSettings& settings, Diagnostics& diagnostics);
+std::unique_ptr<GrowthEnvironment> make_points(const EnvironmentSettings& settings, Diagnostics& diagnostics);
 
 } // namespace graftal

@@ -52,7 +52,7 @@ double shared_area(double a, double b, double distance) {
 
 /// Each query is a ball of the radius that it tells. From each direction it hears of its disc the share that
 /// others leave free: one that covers a share of it takes so much away, except for its transmittance.
-class Shade : public Surroundings {
+class Shade : public GrowthEnvironment {
   public:
     Shade(const EnvironmentSettings& settings, Diagnostics& diagnostics)
         : transmittance_(settings.transmittance),
@@ -121,7 +121,7 @@ class Shade : public Surroundings {
 
 } // namespace
 
-std::unique_ptr<Surroundings> make_shade(const EnvironmentSettings& settings, Diagnostics& diagnostics) {
+std::unique_ptr<GrowthEnvironment> make_shade(const EnvironmentSettings& settings, Diagnostics& diagnostics) {
     return std::make_unique<Shade>(settings, diagnostics);
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 /// Each query throws a shadow upon the voxels below: q voxels down, over (2q + 1)^2 of them, of its weight
 /// times a b^-q. It hears 1 less the shadow of the others.
-class ShadowVoxels : public Surroundings {
+class ShadowVoxels : public GrowthEnvironment {
   public:
     ShadowVoxels(const EnvironmentSettings& settings, Diagnostics& diagnostics)
         : size_(settings.voxel), strength_(settings.strength), decay_(settings.decay), depth_(settings.depth),
@@ -28,23 +28,23 @@ class ShadowVoxels : public Surroundings {
     }
 
     bool answer(std::span<EnvironmentQuery> queries) override {
-        std::unordered_map<CellPlace, double, CellHash> shadow;
+        std::unordered_map<GridCell, double, CellHash> shadow;
         for (const EnvironmentQuery& query : queries) {
             const double weight = query.values.empty() ? 0 : query.values[0];
             if (weight != 0 && !throw_shadow(cell_of(query.place, size_), weight, shadow)) return false;
         }
-        const auto at = [&](const CellPlace& cell) {
+        const auto at = [&](const GridCell& cell) {
             const auto known = shadow.find(cell);
             return known == shadow.end() ? 0.0 : known->second;
         };
         for (const EnvironmentQuery& query : queries) {
             if (query.values.empty()) continue;
-            const CellPlace cell = cell_of(query.place, size_);
+            const GridCell cell = cell_of(query.place, size_);
             query.values[0] = std::clamp(1 - (at(cell) - strength_ * query.values[0]), 0.0, 1.0);
             if (query.values.size() < 4) continue;
             Vec3 darker(0.0);
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                CellPlace before = cell, after = cell;
+                GridCell before = cell, after = cell;
                 --before[axis];
                 ++after[axis];
                 darker[static_cast<int>(axis)] = at(after) - at(before);
@@ -57,15 +57,15 @@ class ShadowVoxels : public Surroundings {
     }
 
   private:
-    bool throw_shadow(const CellPlace& from, double weight,
-                      std::unordered_map<CellPlace, double, CellHash>& shadow) {
+    bool throw_shadow(const GridCell& from, double weight,
+                      std::unordered_map<GridCell, double, CellHash>& shadow) {
         double share = weight * strength_;
         const std::size_t x = (up_ + 1) % 3, z = (up_ + 2) % 3;
         for (std::int64_t q = 0; q <= depth_; ++q, share /= decay_) {
             if (!budget_.take(static_cast<std::uint64_t>((2 * q + 1) * (2 * q + 1)))) return false;
             for (std::int64_t i = -q; i <= q; ++i)
                 for (std::int64_t k = -q; k <= q; ++k) {
-                    CellPlace cell = from;
+                    GridCell cell = from;
                     cell[up_] += down_ * q;
                     cell[x] += i;
                     cell[z] += k;
@@ -92,7 +92,8 @@ class ShadowVoxels : public Surroundings {
 
 } // namespace
 
-std::unique_ptr<Surroundings> make_shadows(const EnvironmentSettings& settings, Diagnostics& diagnostics) {
+std::unique_ptr<GrowthEnvironment> make_shadows(const EnvironmentSettings& settings,
+                                                Diagnostics& diagnostics) {
     return std::make_unique<ShadowVoxels>(settings, diagnostics);
 }
 

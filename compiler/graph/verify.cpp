@@ -58,16 +58,71 @@ bool is_object_name(std::string_view name) {
     }
 }
 
+// Whether all numbers of a value are finite. Each setting is taken apart, so that one with a new field does
+// not compile until somebody decides on that field here.
+
+bool finite(double value) {
+    return std::isfinite(value);
+}
+
+bool finite(Vec2 v) {
+    return finite(v.x) && finite(v.y);
+}
+
 bool finite(Vec3 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+    return finite(v.x) && finite(v.y) && finite(v.z);
+}
+
+template<typename T> bool finite(const std::optional<T>& value);
+
+template<typename... T> bool all_finite(const T&... values) {
+    return (finite(values) && ...);
+}
+
+bool finite(const FlatArea& area) {
+    const auto& [disc, low, high, centre, radius] = area;
+    return all_finite(low, high, centre, radius);
+}
+
+bool finite(const CameraSetting& setting) {
+    const auto& [location, look_at, up, direction, angle_deg, orthographic, width, height, aperture, focus] =
+        setting;
+    return all_finite(location, look_at, up, direction, angle_deg, width, height, aperture, focus);
+}
+
+bool finite(const LightSetting& setting) {
+    const auto& [location, sun, rgb, shadowless, angle_deg, width, height, radius, look_at] = setting;
+    return all_finite(location, rgb, angle_deg, width, height, radius, look_at);
+}
+
+bool finite(const BackgroundSetting& setting) {
+    const auto& [rgb, horizon] = setting;
+    return all_finite(rgb, horizon);
+}
+
+bool finite(const GroundSetting& setting) {
+    const auto& [height, material, rgb, area] = setting;
+    return all_finite(height, rgb, area);
+}
+
+bool finite(const SkySetting& setting) {
+    const auto& [zenith, horizon, below, turbidity, environment, picture, clouds, turn_deg, brightness,
+                 bounces] = setting;
+    return all_finite(zenith, horizon, below, turbidity, clouds, turn_deg, brightness);
+}
+
+bool finite(const Film& film) {
+    const auto& [exposure, white_k, soft] = film;
+    return all_finite(exposure, white_k);
+}
+
+bool finite(const HazeSetting& setting) {
+    const auto& [distance, base, height, rgb] = setting;
+    return all_finite(distance, base, height, rgb);
 }
 
 template<typename T> bool finite(const std::optional<T>& value) {
     return !value || finite(*value);
-}
-
-bool finite(const std::optional<double>& value) {
-    return !value || std::isfinite(*value);
 }
 
 class Verifier {
@@ -121,10 +176,10 @@ class Verifier {
                 flaw(graph_.root, "two materials are named '{}'", material.name);
             if (!is_plain_name(material.name))
                 flaw(graph_.root, "the name of material '{}' cannot be written in .inst", material.name);
-            const bool numbers =
-                finite(material.rgb) && std::ranges::all_of(finish_numbers, [&](const FinishNumber& row) {
-                    return std::isfinite(material.*row.value);
-                });
+            const bool numbers = all_finite(material.rgb, material.around, material.coverage) &&
+                                 std::ranges::all_of(finish_numbers, [&](const FinishNumber& row) {
+                                     return std::isfinite(material.*row.value);
+                                 });
             if (!numbers) flaw(graph_.root, "material '{}' has a number that is not finite", material.name);
             if (material.metallic > 0 && material.has_coat())
                 flaw(graph_.root, "material '{}' is a metal with an index of refraction", material.name);
@@ -138,23 +193,21 @@ class Verifier {
     }
 
     void check_settings() {
-        const SceneSettings& settings = graph_.settings;
-        bool numbers = true;
-        if (const auto& camera = settings.camera)
-            numbers = finite(camera->location) && finite(camera->look_at) && finite(camera->up) &&
-                      finite(camera->angle_deg) && finite(camera->width);
-        for (const LightSetting& light : settings.lights)
-            numbers = numbers && finite(light.location) && finite(light.rgb);
-        if (const auto& background = settings.background)
-            numbers = numbers && finite(background->rgb) && finite(background->horizon);
-        if (const auto& ground = settings.ground) {
-            numbers = numbers && std::isfinite(ground->height) && finite(ground->rgb);
-            const bool known = !ground->material ||
-                               std::any_of(graph_.materials.begin(), graph_.materials.end(),
-                                           [&](const Material& m) { return m.name == *ground->material; });
-            if (!known) flaw(graph_.root, "the ground's material '{}' does not exist", *ground->material);
-        }
-        if (!numbers) flaw(graph_.root, "a scene setting is not finite");
+        const auto& [camera, lights, background, ground, sky, film, haze, steps] = graph_.settings;
+        const auto check = [&](std::string_view name, const auto& setting) {
+            if (!finite(setting)) flaw(graph_.root, "the {} has a number that is not finite", name);
+        };
+        check("camera", camera);
+        for (const LightSetting& light : lights)
+            check("light", light);
+        check("background", background);
+        check("ground", ground);
+        check("sky", sky);
+        check("film", film);
+        check("haze", haze);
+        if (ground && ground->material &&
+            std::ranges::find(graph_.materials, *ground->material, &Material::name) == graph_.materials.end())
+            flaw(graph_.root, "the ground's material '{}' does not exist", *ground->material);
     }
 
     void check_object(ObjectId id) {

@@ -9,7 +9,6 @@
 #include "compiler/languages/languages.h"
 #include "compiler/lower/check_graph.h"
 #include "compiler/lower/lowering.h"
-#include "compiler/support/file.h"
 #include "compiler/support/number.h"
 #include "compiler/support/stage_price.h"
 
@@ -56,19 +55,6 @@ std::string model_language(const SourceMap& sources) {
         return std::string(language->extension);
     const std::string extension = std::filesystem::path(sources.name(file)).extension().string();
     return extension.empty() ? "" : extension.substr(1);
-}
-
-LoweredText lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
-                        Diagnostics& diagnostics, Status& status, const LowerHelp& help) {
-    std::string text;
-    const std::string file = help.translator.model_path(path).file;
-    if (file != "-" && !options.root.empty() && !lies_in(file, options.root)) {
-        diagnostics.error(Span(), fmt::format("'{}' leads out of the root folder '{}'", file, options.root));
-        return {};
-    }
-    status = read_text(file, text);
-    if (!status.ok()) return {};
-    return lower_text(path, std::move(text), options, sources, diagnostics, help);
 }
 
 LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,

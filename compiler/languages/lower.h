@@ -7,7 +7,6 @@
 #include "compiler/lower/lower_options.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/source.h"
-#include "compiler/support/status.h"
 
 namespace graftal {
 
@@ -18,16 +17,10 @@ struct LoweredText {
     LowerNotes notes;
 };
 
-/// Reads a model, and all that it uses, and lowers it. The path may name a model in a foreign file, which the
-/// translator of `help` translates first. The language follows the file name (languages.h), for
-/// "-" (standard input) the text. Bad input is reported to `diagnostics` and gives nothing; a root file that
-/// cannot be read gives nothing and a failed `status`. Used files are looked up beside the file that names
-/// them. The flag of `help` ends it by Cancelled.
-LoweredText lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
-                        Diagnostics& diagnostics, Status& status, const LowerHelp& help = {});
-
-/// The same as lower_model for a text already at hand, as the model `name` (which decides the language and
-/// where used files are looked up).
+/// Lowers the text of a model, and all that it uses. `name` may name a model in a foreign file, which the
+/// translator of `help` translates first. The language follows the name (languages.h), for "-" (standard
+/// input) the text. Bad input is reported to `diagnostics` and gives nothing. Used files are looked up beside
+/// the file that names them. The flag of `help` ends it by Cancelled.
 LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,
                        SourceMap& sources, Diagnostics& diagnostics, const LowerHelp& help = {});
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <mutex>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -198,7 +197,11 @@ struct Layer {
     }
 };
 
-std::shared_ptr<const SkyPicture> drawn(const SkyLight& sky, const Clouds& clouds) {
+} // namespace
+
+std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clouds& clouds) {
+    GRAFTAL_CHECK(!sky.picture && sky.up == Vec3(0, 1, 0),
+                  "cloudy_picture: an upright sky without a picture");
     const Layer layer(sky, clouds);
     std::vector<SkyPicture::Texel> texels;
     texels.reserve(static_cast<std::size_t>(columns) * rows);
@@ -213,23 +216,14 @@ std::shared_ptr<const SkyPicture> drawn(const SkyLight& sky, const Clouds& cloud
     return std::make_shared<const SkyPicture>(columns, rows, std::move(texels));
 }
 
-} // namespace
-
-std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clouds& clouds) {
-    GRAFTAL_CHECK(!sky.picture && sky.up == Vec3(0, 1, 0),
-                  "cloudy_picture: an upright sky without a picture");
-    // Framing asks for the scene several times, and the pictures of a film have one sky.
-    static std::mutex lock;
-    static SkyLight last_sky;
-    static Clouds last_clouds;
-    static std::weak_ptr<const SkyPicture> last;
-    const std::lock_guard hold(lock);
-    std::shared_ptr<const SkyPicture> picture = last.lock();
-    if (picture && last_sky == sky && last_clouds == clouds) return picture;
-    picture = drawn(sky, clouds);
-    last_sky = sky;
-    last_clouds = clouds;
-    last = picture;
+std::shared_ptr<const SkyPicture> CloudPictures::picture(const SkyLight& sky, const Clouds& clouds) {
+    const std::lock_guard lock(mutex_);
+    std::shared_ptr<const SkyPicture> picture = picture_.lock();
+    if (picture && sky_ == sky && clouds_ == clouds) return picture;
+    picture = cloudy_picture(sky, clouds);
+    sky_ = sky;
+    clouds_ = clouds;
+    picture_ = picture;
     return picture;
 }
 

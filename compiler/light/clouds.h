@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 
 #include "compiler/light/sky_light.h"
 
@@ -20,7 +21,20 @@ struct Clouds {
 /// is a sum of gradient noise (Perlin, "Improving noise", 2002) of falling wavelengths; light comes through
 /// them and is scattered forwards by Henyey and Greenstein's function (1941), and is lost on its way from the
 /// sun. No measured sky: a likeness. Requires an upright sky that shows no picture. The same values give the
-/// same texels; as long as the last picture is in use, asking for it again costs nothing.
+/// same texels.
 std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clouds& clouds);
+
+/// The last cloudy_picture(), as long as somebody uses it: framing asks for it several times, and the
+/// pictures of a film have one sky. Many threads may ask.
+class CloudPictures {
+  public:
+    std::shared_ptr<const SkyPicture> picture(const SkyLight& sky, const Clouds& clouds);
+
+  private:
+    std::mutex mutex_;
+    SkyLight sky_;
+    Clouds clouds_;
+    std::weak_ptr<const SkyPicture> picture_;
+};
 
 } // namespace graftal

@@ -2,7 +2,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/primitives/triangle_mesh.h"
+#include "compiler/primitives/primitive.h"
 
 namespace graftal {
 namespace {
@@ -19,10 +19,9 @@ bool is_sane(const Ray& ray) {
 bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit,
                std::uint64_t most_steps) {
     if (!is_sane(ray)) return false;
-    const auto of_kind = traits_of(primitive).intersect;
-    return of_kind == triangle_mesh::intersect
-               ? triangle_mesh::intersect_within(primitive, ray, range, hit, most_steps)
-               : of_kind(primitive, ray, range, hit);
+    const PrimitiveTraits& row = traits_of(primitive);
+    return row.intersect_within ? row.intersect_within(primitive, ray, range, hit, most_steps)
+                                : row.intersect(primitive, ray, range, hit);
 }
 
 } // namespace graftal

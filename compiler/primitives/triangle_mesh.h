@@ -76,6 +76,7 @@ constexpr PrimitiveTraits traits(PrimitiveArguments arguments = {},
         .area = area,
         .site = site,
         .intersect = intersect,
+        .intersect_within = intersect_within,
     };
 }
 

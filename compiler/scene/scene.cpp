@@ -77,7 +77,7 @@ std::vector<Light> model_lights(const std::vector<LightSetting>& settings) {
     return lights;
 }
 
-SkyLight resolve(const SkySetting& setting, const std::vector<Light>& lights) {
+SkyLight resolve(const SkySetting& setting, const std::vector<Light>& lights, CloudPictures* pictures) {
     SkyLight sky;
     sky.picture = setting.picture;
     sky.picture_from_world = Affine::rotate({0, 1, 0}, -setting.turn_deg).linear;
@@ -95,7 +95,7 @@ SkyLight resolve(const SkySetting& setting, const std::vector<Light>& lights) {
             clouds.to_sun = sun->location;
             clouds.sun_rgb = sun->rgb;
         }
-        sky.picture = cloudy_picture(sky, clouds);
+        sky.picture = pictures ? pictures->picture(sky, clouds) : cloudy_picture(sky, clouds);
         sky.picture_from_world = Mat3(1.0);
         sky.brightness = 1;
     }
@@ -193,16 +193,17 @@ bool shows_blur(const Graph& graph, const View& view) {
 }
 
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera,
-           const Outliner& outliner, DefaultLight light) {
+           const Outliner& outliner, DefaultLight light, CloudPictures* clouds) {
     GRAFTAL_CHECK(!bounds.empty(), "frame: empty bounds");
     GRAFTAL_CHECK(size.width > 0 && size.height > 0, "frame: empty picture");
     const CameraSetting setting = merge(graph.settings.camera.value_or(CameraSetting{}), camera);
     return view_through(frame_camera(setting, bounds, outliner, size), setting, graph, bounds, size,
-                        sample_colours(graph), light);
+                        sample_colours(graph), light, clouds);
 }
 
 View view_through(const Camera& camera, const CameraSetting& setting, const Graph& graph, const Box& bounds,
-                  ImageSize size, const std::vector<Rgb>& colours, DefaultLight light) {
+                  ImageSize size, const std::vector<Rgb>& colours, DefaultLight light,
+                  CloudPictures* clouds) {
     const SceneSettings& settings = graph.settings;
     const bool flat = thickness(bounds) <= flat_share;
     View view;
@@ -220,7 +221,7 @@ View view_through(const Camera& camera, const CameraSetting& setting, const Grap
     else
         view.lights = solid_lights(view.camera, view.ground.has_value());
     if (settings.sky) {
-        view.sky_light = resolve(*settings.sky, view.lights);
+        view.sky_light = resolve(*settings.sky, view.lights, clouds);
         view.shows_sky_light = !settings.background;
     }
     view.film = resolve_film(settings, view.sky_light.has_value());

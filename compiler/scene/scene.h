@@ -17,6 +17,8 @@
 
 namespace graftal {
 
+class CloudPictures;
+
 struct ImageSize {
     int width = 1280;
     int height = 720;
@@ -128,13 +130,15 @@ enum class DefaultLight {
 /// their true colours; models in space from the front, a little from the right and above, in the light of a
 /// studio (studio.h) where they name no light; figures on a background that lets them stand out. With an
 /// outline as well, the picture is filled by the model itself rather than by its box. Requires bounds that
-/// are not empty.
+/// are not empty. `clouds` may keep the picture of a cloudy sky for the next view; null: none is kept.
 View frame(const Graph& graph, const Box& bounds, ImageSize size, const CameraOverride& camera = {},
-           const Outliner& outliner = {}, DefaultLight light = DefaultLight::studio);
+           const Outliner& outliner = {}, DefaultLight light = DefaultLight::studio,
+           CloudPictures* clouds = nullptr);
 
 /// The view through a camera that is settled, with the lens of `setting`; the rest is chosen as frame() does
 /// it, for a model of these bounds that shows these colours (backdrop.h).
 View view_through(const Camera& camera, const CameraSetting& setting, const Graph& graph, const Box& bounds,
-                  ImageSize size, const std::vector<Rgb>& colours, DefaultLight light = DefaultLight::studio);
+                  ImageSize size, const std::vector<Rgb>& colours, DefaultLight light = DefaultLight::studio,
+                  CloudPictures* clouds = nullptr);
 
 } // namespace graftal

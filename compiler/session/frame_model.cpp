@@ -54,17 +54,17 @@ Sight sight_of(const AnalysedModel& model, std::optional<unsigned> steps) {
             }};
 }
 
-View frame_graph(const Graph& graph, const Sight& sight, const ViewOptions& options) {
+View frame_graph(const Graph& graph, const Sight& sight, const ViewOptions& options, CloudPictures* clouds) {
     ImageSize size = options.size;
     if (options.shaped && !options.zoom.active()) {
         const CameraSetting own = graph.settings.camera.value_or(CameraSetting{});
         size = shaped_size(merge(own, options.camera), sight.bounds, sight.outliner, size);
     }
-    return frame(graph, sight.bounds, size, options.camera, sight.outliner, options.light);
+    return frame(graph, sight.bounds, size, options.camera, sight.outliner, options.light, clouds);
 }
 
 View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, const ViewOptions& options) {
-    return frame_graph(model.graph, sight_of(model, steps), options);
+    return frame_graph(model.graph, sight_of(model, steps), options, model.clouds.get());
 }
 
 } // namespace graftal

@@ -18,7 +18,8 @@ struct Sight {
 Sight sight_of(const AnalysedModel& model, std::optional<unsigned> steps);
 
 /// The view of what is seen so, without zoom and shared framing.
-View frame_graph(const Graph& graph, const Sight& sight, const ViewOptions& options);
+View frame_graph(const Graph& graph, const Sight& sight, const ViewOptions& options,
+                 CloudPictures* clouds = nullptr);
 
 /// The view of a model as it will be drawn, without zoom and shared framing.
 View frame_model(const AnalysedModel& model, std::optional<unsigned> steps, const ViewOptions& options);

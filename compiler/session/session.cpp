@@ -201,8 +201,11 @@ bool Session::need_analysed(const StageOptions& options, bool wanted, Compilatio
             ++runs_.analysed;
             LoweredModel lowered = take_lowered();
             StageWork work = stage_work(options, lowered.work_seconds);
-            return analyse(std::move(lowered), options.view.zoom.at, {options.stop_after, after_pass_}, found,
-                           compilation.times, charging(work));
+            std::optional<AnalysedModel> model =
+                analyse(std::move(lowered), options.view.zoom.at, {options.stop_after, after_pass_}, found,
+                        compilation.times, charging(work));
+            if (model) model->clouds = clouds_;
+            return model;
         });
     }
     compilation.diagnostics = analysed_.findings();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/detail/prepare.h"
+#include "compiler/light/clouds.h"
 #include "compiler/lower/parsed_files.h"
 #include "compiler/session/memo.h"
 #include "compiler/session/stage_options.h"
@@ -150,6 +151,7 @@ class Session {
     PassObserver after_pass_;
     Keep keep_;
     Control control_;
+    std::shared_ptr<CloudPictures> clouds_ = std::make_shared<CloudPictures>();
     StageRuns runs_; ///< apart from those of parsers
 
     std::optional<SourceKey> source_key_;

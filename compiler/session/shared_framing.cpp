@@ -72,7 +72,8 @@ View SharedFraming::view(const AnalysedModel& model, const ViewOptions& options)
     turned.direction = turn(turned.direction);
     turned.up = turn(turned.up);
     turned.right = turn(turned.right);
-    return view_through(turned, setting, model.graph, bounds_, size_, colours_, options.light);
+    return view_through(turned, setting, model.graph, bounds_, size_, colours_, options.light,
+                        model.clouds.get());
 }
 
 Camera SharedFraming::frame(const CameraSetting& setting) const {

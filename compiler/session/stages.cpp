@@ -131,6 +131,7 @@ std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<uns
     zoomed->contraction = model.contraction;
     zoomed->bounds = std::move(rerooted->bounds);
     zoomed->derivation = model.derivation;
+    zoomed->clouds = model.clouds;
     return ViewedModel{std::move(zoomed), rerooted->steps, std::move(rerooted->view), rerooted->zoom};
 }
 

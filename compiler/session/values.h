@@ -65,10 +65,11 @@ struct AnalysedModel {
     Graph graph;       ///< after them
     Components components;
     Contraction contraction;
-    std::vector<ObjectBounds> bounds;     ///< empty unless the contraction is proved or acyclic
-    std::optional<Derivation> derivation; ///< of an L-system
-    std::optional<GraphPath> at;          ///< where the zoom's address leads
-    double work_seconds = 0;              ///< counted, of the lowering too (support/stage_work.h)
+    std::vector<ObjectBounds> bounds;      ///< empty unless the contraction is proved or acyclic
+    std::optional<Derivation> derivation;  ///< of an L-system
+    std::optional<GraphPath> at;           ///< where the zoom's address leads
+    double work_seconds = 0;               ///< counted, of the lowering too (support/stage_work.h)
+    std::shared_ptr<CloudPictures> clouds; ///< the session's; null: views of the model share no sky
 };
 
 /// A model that is looked at: what every engine starts from.

@@ -20,7 +20,6 @@ class CancelFlag {
         : asked_(std::move(asked)), wake_descriptor_(wake_descriptor) {}
 
     bool raised() const { return asked_ && asked_(); }
-    bool can_be_raised() const { return static_cast<bool>(asked_); }
     int wake_descriptor() const { return wake_descriptor_; }
 
   private:

@@ -11,7 +11,7 @@
 #include "compiler/scene/framing.h"
 #include "compiler/support/number_range.h"
 #include "compiler/zoom/focus.h"
-#include "compiler/zoom/surroundings.h"
+#include "compiler/zoom/neighbourhood.h"
 #include "compiler/zoom/zoom_scale.h"
 
 namespace graftal {
@@ -240,7 +240,7 @@ class Rerooter {
 
     /// Down the path until the object reached is no larger than the picture's reach.
     bool descend(ZoomScale& scale) {
-        using Outcome = Surroundings::Outcome;
+        using Outcome = Neighbourhood::Outcome;
         const GraphPath& path = focus_.path;
         while (!own_fits(scale) && (path.endless() || result_.depth < path.steps.size())) {
             ZoomScale below = scale;
@@ -283,9 +283,9 @@ class Rerooter {
 
     bool refuse_crowd() {
         return refuse(around_.looked_too_often()
-                          ? fmt::format("more than {} parts may reach this place", Surroundings::most_looks)
+                          ? fmt::format("more than {} parts may reach this place", Neighbourhood::most_looks)
                           : fmt::format("more than {} parts of one size crowd around this place",
-                                        Surroundings::most_pieces),
+                                        Neighbourhood::most_pieces),
                       "zoom in less, or choose another address");
     }
 
@@ -429,7 +429,7 @@ class Rerooter {
     const FrameObject& frame_object_;
     Diagnostics& diagnostics_;
     Focus focus_;
-    Surroundings around_;
+    Neighbourhood around_;
     double reach_ = 0;
     std::optional<GroundPlane> ground_;
     bool whole_ = false; ///< the object reached fits into the picture's reach

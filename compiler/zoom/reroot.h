@@ -2,7 +2,7 @@
 
 // Deep zoom. A picture far inside the unfolding is made of a graph with a new root: the few subtrees that lie
 // around the focus, placed in coordinates of the picture. They are found on the way down an address
-// (surroundings.h), so the magnification has no limit for similarities, and no coordinate passes through the
+// (neighbourhood.h), so the magnification has no limit for similarities, and no coordinate passes through the
 // world (Hart and DeFanti's camera in a node's own frame, made a compiler's stage).
 
 #include <cstdint>

@@ -13,18 +13,16 @@
 #include <utility>
 #include <vector>
 
-#include <boost/multiprecision/cpp_int.hpp>
-
 #include "compiler/detail/cut_graph.h"
 #include "compiler/detail/run_cells.h"
 #include "compiler/graph/material.h"
 #include "compiler/scene/scene.h"
+#include "compiler/support/big_count.h"
 #include "compiler/support/control.h"
 
 namespace graftal {
 
 using SceneId = std::uint32_t;
-using BigCount = boost::multiprecision::cpp_int;
 
 /// A primitive as a mesh (tessellate.h).
 struct SceneShape {

@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstring>
 #include <future>
 #include <optional>
@@ -13,7 +12,6 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
@@ -50,15 +48,15 @@ Module load_module() {
     return {reinterpret_cast<const PictureFiles* (*)()>(symbol)(), {}};
 }
 
-/// A library's own code runs while it is loaded, and may wait for ever: log4cplus does where one of its
-/// threads cannot be made, and lets no signal through meanwhile. While one of these lives, its thread waits,
-/// and ends the program by SIGALRM after some seconds.
+void (*on_late_libraries)() = nullptr; ///< null: nobody watches
+
+/// While one of these lives, its thread waits, and calls on_late_libraries() after some seconds.
 class LibraryWatch {
   public:
     /// Throws std::system_error where no thread can be made.
     LibraryWatch()
         : thread_([loaded = loaded_.get_future()] {
-              if (loaded.wait_for(longest) == std::future_status::timeout) ::kill(::getpid(), SIGALRM);
+              if (loaded.wait_for(longest) == std::future_status::timeout) on_late_libraries();
           }) {}
     ~LibraryWatch() {
         loaded_.set_value();
@@ -74,6 +72,7 @@ class LibraryWatch {
 };
 
 Module load_in_time() {
+    if (!on_late_libraries) return load_module();
     try {
         const LibraryWatch watch;
         return load_module();
@@ -112,6 +111,10 @@ Status failure(const char* verb, const std::string& path, std::string text) {
 }
 
 } // namespace
+
+void watch_libraries_load(void (*on_late)()) {
+    on_late_libraries = on_late;
+}
 
 bool is_exr_name(const std::string& path) {
     return extension(path) == ".exr";

@@ -47,6 +47,12 @@ class ImageSink : public RowSink {
     std::size_t row_samples_ = 0;
 };
 
+/// A library's own code runs while it is loaded, and may wait for ever: log4cplus does where one of its
+/// threads cannot be made, and lets no signal through meanwhile. From now on a thread of its own calls
+/// `on_late` where OpenImageIO takes 20 seconds to load. A program that must not hang calls this in its
+/// main(). Without it nobody watches: a library or a server lets its host decide.
+void watch_libraries_load(void (*on_late)());
+
 /// Reads a regular file in any format that OpenImageIO knows, row by row where the format allows it.
 Status read_rows(const std::string& path, RowSink& sink);
 

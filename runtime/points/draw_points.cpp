@@ -19,8 +19,8 @@
 #include "runtime/points/card.h"
 #include "runtime/points/orbit_source.h"
 #include "runtime/points/ply_file.h"
+#include "runtime/points/point_projection.h"
 #include "runtime/points/point_source.h"
-#include "runtime/points/projection.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
 
@@ -127,7 +127,7 @@ class Canvas {
     static constexpr std::size_t beside = SIZE_MAX; ///< the picture
 
     const PointsOptions& options_;
-    Projection projection_;
+    PointProjection projection_;
     ImageSize size_;
     bool shared_ = false;
     std::vector<std::unique_ptr<Accumulation>> copies_; ///< by worker

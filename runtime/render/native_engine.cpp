@@ -9,13 +9,11 @@
 
 #include "compiler/detail/coarser.h"
 #include "compiler/session/stages.h"
-#include "runtime/image/develop.h"
-#include "runtime/render/aov_channels.h"
+#include "runtime/render/drawing.h"
 #include "runtime/render/fit_picture.h"
 #include "runtime/render/samplings.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
-#include "runtime/system/worker_threads.h"
 
 namespace graftal {
 
@@ -119,170 +117,6 @@ void report_shells(const TraceModel& model, const Asked& asked, Diagnostics& dia
         warn_of_shells(asked.span, {coarsest * model.options.error_px, asked.plan.detail.error_px},
                        diagnostics);
 }
-
-/// What of the picture is drawn.
-Tile window_of(const RenderOptions& options, ImageSize size) {
-    return options.tile.value_or(whole_of(size));
-}
-
-/// One picture, from the first sample to the last file.
-class Drawing {
-  public:
-    Drawing(const View& view, const CutGraph& cut, const RenderOptions& options, const PictureSink& sink,
-            const CancelFlag& cancel)
-        : options_(options), sink_(sink), cancel_(cancel), window_(window_of(options, view.size)),
-          film_(view.film) {
-        picture_.width = window_.width;
-        picture_.height = window_.height;
-        picture_.channels = 3;
-        picture_.pixels.resize(3 * pixels());
-        if (!options.aovs) return;
-        aovs_.resize(pixels());
-        numbers_.emplace(cut);
-    }
-
-    /// Coarse looks, one after the other. `work`: samples a pixel of all looks, earlier and later ones too.
-    Status look(const TraceModel& model, const std::vector<Sampling>& looks, double work) {
-        work_ = work;
-        report_.finished = false;
-        for (const Sampling& sampling : looks)
-            if (Status status = look(model, sampling); !status.ok()) return status;
-        return {};
-    }
-
-    /// The finest look, after others or alone. `sample_seconds`: as FittedModel's.
-    Status finish(const TraceModel& model, const Sampling& finest, double sample_seconds) {
-        work_ = done_ + finest.samples_a_pixel();
-        report_.finished = false;
-        std::vector<NoiseMeter> meters;
-        if (options_.progressive && finest.most_samples > 0 && !numbers_ && has_room_for_samples()) {
-            meters.resize(pixels());
-            samples_ = &meters;
-            Sampling round = finest;
-            const double soon = std::max(1.0, std::ceil(seconds_a_round / std::max(sample_seconds, 1e-9)));
-            for (double count = soon; 2 * count < finest.most_samples; count *= growth_of_rounds) {
-                round.most_samples = static_cast<int>(count);
-                if (Status status = look(model, round); !status.ok()) return status;
-            }
-        }
-        Status status = look(model, finest);
-        report_.finished = status.ok();
-        return status;
-    }
-
-    double done() const { return done_; } ///< samples a pixel
-
-    const NativeReport& report() const { return report_; }
-
-  private:
-    /// Samples that are added between two pictures: the first round takes so many seconds of one processor.
-    static constexpr double seconds_a_round = 2, growth_of_rounds = 3;
-
-    bool has_room_for_samples() const {
-        constexpr std::uint64_t share = 4; // of the memory
-        return pixels() * sizeof(NoiseMeter) < options_.compile.detail.memory_bytes / share;
-    }
-
-    Status look(const TraceModel& model, const Sampling& sampling) {
-        PictureTracer tracer(model, limits_of(model, options_));
-        const std::size_t traced = trace(tracer, sampling);
-        // The noise is that of the last look alone.
-        report_.rays.noisy_pixels = report_.rays.noise_1024 = report_.rays.measured_pixels = 0;
-        report_.rays += tracer.statistics();
-        report_.error_px = model.options.culls() ? model.projection.error_px() : 0;
-        const bool complete = traced == pixels();
-        if (!complete && !worth_leaving()) return interrupted();
-        const Status status = write();
-        if (!status.ok()) return status;
-        note(sampling, traced);
-        return complete ? status : interrupted();
-    }
-
-    std::size_t pixels() const { return window_.pixels(); }
-
-    static Status interrupted() { return Status::failure("interrupted"); }
-
-    /// A picture that is cut short is finer than the one that is there.
-    bool worth_leaving() const { return options_.progressive && report_.pictures > 0; }
-
-    void note(const Sampling& sampling, std::size_t traced) {
-        if (traced == pixels()) {
-            report_.samples_a_pixel = sampling.samples_a_pixel();
-            report_.fewer_where_calm = sampling.noise_255 > 0;
-            return;
-        }
-        report_.finer_samples_a_pixel = sampling.samples_a_pixel();
-        report_.finer_share = static_cast<double>(traced) / static_cast<double>(pixels());
-    }
-
-    /// Returns the number of finished pixels: all, unless it was interrupted.
-    std::size_t trace(PictureTracer& tracer, const Sampling& sampling) {
-        const Stopwatch watch;
-        const double done = samples_ ? samples_done_ : 0;
-        std::size_t traced = 0;
-        TraceControl control;
-        const WorkerThreads workers(options_.threads);
-        control.workers = &workers;
-        control.sequence = options_.sequence;
-        control.samples = samples_;
-        control.cancelled = [this] { return cancel_.raised(); };
-        control.on_tile = [&](const Tile& tile) {
-            traced += tile.pixels();
-            const double share = static_cast<double>(traced) / static_cast<double>(pixels());
-            tell((done_ + share * (sampling.samples_a_pixel() - done)) / work_);
-        };
-        tracer.trace(sampling, control, window_, picture_, numbers_ ? &aovs_ : nullptr);
-        done_ += sampling.samples_a_pixel() - done;
-        if (samples_) samples_done_ = sampling.samples_a_pixel();
-        report_.seconds += watch.seconds();
-        return traced;
-    }
-
-    void tell(double fraction) const {
-        if (options_.on_progress)
-            options_.on_progress(
-                {report_.pictures ? "refining" : "tracing", fraction, report_.samples_a_pixel});
-    }
-
-    Status write() {
-        const RenderOptions& render = options_;
-        const bool linear = render.format == SampleFormat::linear16 || is_exr_name(render.output);
-        const Image image = linear ? picture_ : encoded();
-        MoreChannels more;
-        if (numbers_) more = aov_channels(aovs_, *numbers_);
-        const Status status = sink_ ? sink_(image)
-                                    : write_image(render.output, image, render.format, render.metadata,
-                                                  numbers_ ? &more : nullptr);
-        if (status.ok() && report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
-        return status;
-    }
-
-    Image encoded() const {
-        Image image = picture_;
-        constexpr int rows = 16;
-        const Developer developer(film_, options_.format, window_.x, window_.y);
-        const auto encode = [&](int, std::uint64_t piece) {
-            const int begin = static_cast<int>(piece) * rows;
-            developer.develop(image, begin, std::min(begin + rows, image.height));
-        };
-        WorkerThreads(options_.threads)
-            .for_each(static_cast<std::uint64_t>((image.height + rows - 1) / rows), encode);
-        return image;
-    }
-
-    const RenderOptions& options_;
-    const PictureSink& sink_;
-    const CancelFlag& cancel_;
-    Tile window_; ///< of the picture
-    Film film_;
-    Image picture_;
-    AovPicture aovs_;
-    std::optional<ObjectNumbers> numbers_; ///< if there are AOVs
-    NativeReport report_;
-    Stopwatch watch_;
-    std::vector<NoiseMeter>* samples_ = nullptr;    ///< TraceControl::samples, in finish()
-    double work_ = 0, done_ = 0, samples_done_ = 0; ///< samples a pixel; the last: of samples_
-};
 
 /// The first of progressive pictures, before anything is known but what a few rays took: so coarse that it is
 /// soon there.

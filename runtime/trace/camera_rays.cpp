@@ -5,8 +5,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/support/check.h"
-
 namespace graftal {
 
 CameraRays::CameraRays(const View& view) : camera_(view.camera), lens_(view.lens), size_(view.size) {
@@ -29,19 +27,6 @@ Ray CameraRays::through(double x, double y, glm::dvec2 place) const {
     const Vec3 sharp = middle(lens_.depth / glm::dot(middle.direction, camera_.direction));
     const Vec3 from = camera_.location + aside;
     return {from, glm::normalize(sharp - from)};
-}
-
-std::vector<PixelSample> povray_samples_of_pixel(int depth) {
-    GRAFTAL_CHECK(1 <= depth && depth <= 9, "trace: POV-Ray has no such antialiasing");
-    const int cells = 1 << (depth - 1);
-    // Along a line each cell gives half its share to either end.
-    const auto share = [&](int i) { return (i == 0 || i == cells ? 0.5 : 1.0) / cells; };
-    std::vector<PixelSample> samples;
-    for (int j = 0; j <= cells; ++j)
-        for (int i = 0; i <= cells; ++i)
-            samples.push_back(
-                {static_cast<double>(i) / cells, static_cast<double>(j) / cells, share(i) * share(j)});
-    return samples;
 }
 
 } // namespace graftal

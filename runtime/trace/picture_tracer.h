@@ -38,9 +38,10 @@ Tile common(const Tile& a, const Tile& b);
 /// How finely a picture is looked at: blocks of pixels that show what their middle does, or samples within
 /// each pixel, on a lattice or at random.
 struct Sampling {
-    int block = 1;                ///< pixels along each side of a block
-    std::optional<int> antialias; ///< with blocks of 1: povray_samples_of_pixel() of this depth, else one
-    int most_samples = 0;         ///< with blocks of 1: so many through a filter, in place of a lattice
+    int block = 1; ///< pixels along each side of a block
+    std::optional<int>
+        antialias;        ///< with blocks of 1: the samples of `+A0.0 +AM2 +R<depth> -J` of POV-Ray, else one
+    int most_samples = 0; ///< with blocks of 1: so many through a filter, in place of a lattice
     double noise_255 = 0; ///< fewer, where the error of a pixel is below this, in 255ths as it is shown
 
     /// Rays through a pixel, those that neighbours share counted once.

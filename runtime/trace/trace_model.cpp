@@ -125,7 +125,7 @@ class ModelBuilder {
             node.tree = add_edges(id, source.edges, bounds_.edge[id]);
             node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
             while (node.endless_count < node.edge_count &&
-                   is_endless(cut_.nodes[model_.edges[node.first_edge + node.endless_count].child]))
+                   cut_.nodes[model_.edges[node.first_edge + node.endless_count].child].unbounded)
                 ++node.endless_count;
         }
         for (std::size_t i = node.first_edge; i < model_.edges.size(); ++i)
@@ -200,7 +200,7 @@ class ModelBuilder {
                     part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
             edge.find_upright();
             edge.box = transformed(frame_from_graph, part.box);
-            if (!is_endless(cut_.nodes[edge.child]))
+            if (!cut_.nodes[edge.child].unbounded)
                 numbers.push_back(static_cast<std::uint32_t>(model_.edges.size()));
             add(edge, look, part.holder.value_or(id));
         }
@@ -216,13 +216,8 @@ class ModelBuilder {
         std::optional<NodeId> holder = {}; ///< of a primitive, unless it is the node itself
     };
 
-    /// Planes, and what holds them.
-    static bool is_endless(const CutNode& node) {
-        return node.unbounded || node.primitive == PrimitiveKind::plane;
-    }
-
     /// The instances, with the primitives of small groups in place of the groups: a box more to test is
-    /// sooner done than a frame more to enter. The endless ones come first.
+    /// sooner done than a frame more to enter. The unbounded ones come first.
     std::vector<Part> parts_of(const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) const {
         constexpr std::size_t most_parts = 4096;
         std::vector<Part> parts;
@@ -233,7 +228,7 @@ class ModelBuilder {
                 parts.push_back({edges[i], boxes[i], length_in_turns(edges[i].node_from_child.linear)});
         }
         std::stable_partition(parts.begin(), parts.end(),
-                              [&](const Part& part) { return is_endless(cut_.nodes[part.edge.child]); });
+                              [&](const Part& part) { return cut_.nodes[part.edge.child].unbounded; });
         return parts;
     }
 

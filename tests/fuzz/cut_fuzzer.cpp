@@ -15,6 +15,7 @@
 #include "compiler/povray/emit/scene.h"
 #include "compiler/support/check.h"
 #include "tests/property/random_graph.h"
+#include "tests/unit/povray/cut/cut_graph.h"
 
 using namespace graftal;
 
@@ -75,7 +76,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const View view = frame(graph, bounds[graph.root].box, {48, 32}, camera);
     const bool include = choices.one_in(4);
     const auto cut_once = [&] {
-        return cut_graph(graph, components, bounds, view, options, diagnostics, {.flatten = flatten});
+        return test::cut_graph(graph, components, bounds, view, options, diagnostics, {.flatten = flatten});
     };
     const std::optional<Cut> cut = cut_once();
     GRAFTAL_CHECK(cut.has_value() != diagnostics.has_errors(), "cut fuzzer: a cut or errors");

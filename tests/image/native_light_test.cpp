@@ -16,6 +16,7 @@
 #include "runtime/trace/shade.h"
 #include "tests/image/brute_force.h"
 #include "tests/image/drawing.h"
+#include "tests/image/povray_samples.h"
 
 namespace graftal {
 namespace {

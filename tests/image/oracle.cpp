@@ -20,6 +20,7 @@
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
 #include "tests/image/coincidence.h"
+#include "tests/unit/povray/cut/cut_graph.h"
 
 namespace graftal {
 
@@ -160,8 +161,8 @@ std::optional<Cut> cut_for_povray(DetailedModel& ours, const OracleOptions& opti
     detail.memory_bytes = options.memory_bytes;
     const AnalysedModel& model = *ours.viewed->model;
     Diagnostics found;
-    std::optional<Cut> cut = cut_graph(model.graph, model.components, model.bounds, ours.viewed->view, detail,
-                                       found, {options.flatten});
+    std::optional<Cut> cut = test::cut_graph(model.graph, model.components, model.bounds, ours.viewed->view,
+                                             detail, found, {options.flatten});
     for (const Diagnostic& diagnostic : found.all()) {
         const std::string words = "allow an error of ";
         const std::size_t at = diagnostic.message.find(words);

@@ -7,6 +7,7 @@
 
 #include "compiler/graph/unfold.h"
 #include "compiler/languages/lower.h"
+#include "tests/unit/languages/lower_file.h"
 
 namespace graftal {
 namespace {
@@ -15,8 +16,8 @@ std::uint64_t leaves(const std::string& scene, unsigned steps) {
     SourceMap sources;
     Diagnostics diagnostics;
     Status status;
-    const auto graph = lower_model(std::string(GRAFTAL_SOURCE_DIR) + "/scenes/" + scene + ".rifs", {},
-                                   sources, diagnostics, status)
+    const auto graph = test::lower_file(std::string(GRAFTAL_SOURCE_DIR) + "/scenes/" + scene + ".rifs", {},
+                                        sources, diagnostics, status)
                            .graph;
     EXPECT_TRUE(graph) << status.message() << diagnostics.render(sources);
     if (!graph) return 0;

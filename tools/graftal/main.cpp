@@ -10,6 +10,7 @@
 
 #include "compiler/support/check.h"
 #include "compiler/support/file.h"
+#include "runtime/image_files/image_files.h"
 #include "runtime/system/memory_limit.h"
 #include "runtime/system/signal_stack.h"
 #include "runtime/system/temporary_directory.h"
@@ -66,8 +67,8 @@ void end_after_crash(int) {
                 "or threads left\n");
 }
 
-/// Others wait for ever where they get no thread (image.cpp).
-void end_after_waiting(int) {
+/// Others wait for ever where they get no thread (image.h).
+void end_after_waiting() {
     end_at_once("graftal: a library does not load; the system may have no memory, files or threads left\n");
 }
 
@@ -78,7 +79,7 @@ void handle_crashes() {
 #else
     graftal::handle_on_own_stack({SIGABRT, SIGTRAP, SIGSEGV, SIGBUS}, end_after_crash);
 #endif
-    graftal::handle_on_own_stack({SIGALRM}, end_after_waiting);
+    graftal::watch_libraries_load(end_after_waiting);
 }
 
 } // namespace

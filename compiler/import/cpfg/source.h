@@ -25,8 +25,6 @@ struct CpfgStatement {
     std::string text;                                   ///< line ends are spaces
     std::vector<std::uint32_t> places;                  ///< of each character in the file
     std::vector<std::pair<std::string, Span>> comments; ///< before it
-
-    bool is_comment() const { return text.empty(); }
 };
 
 struct CpfgSource {

@@ -32,7 +32,6 @@ class Writer {
     void write_body(const Rule& rule, const Group& group, std::size_t index);
     void write_action(const Action& action, std::size_t from);
     void write_loops(const std::vector<Loop>& loops, const std::string& target, Span span);
-    void write_wrapper_later(std::vector<Loop> loops, std::string target, Span span);
     void write_mesh(const Action& action);
     bool holds_mesh(const Group& group) const;
 

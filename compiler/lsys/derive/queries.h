@@ -56,7 +56,7 @@ class LsysQueries {
     Graph scratch_;
     TurtleBodies bodies_;
     TurtleContext context_;
-    std::unique_ptr<Surroundings> environment_; ///< null: none
+    std::unique_ptr<GrowthEnvironment> environment_; ///< null: none
     bool failed_ = false;
     std::vector<Met> met_;
     std::vector<Level> levels_;

@@ -56,8 +56,6 @@ class TurtleBodies {
     void add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink);
     void add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span, BodySink sink);
 
-    /// Whether colours fit into a run.
-    bool can_run() const { return palette_.size() < open_width; }
     /// The materials of a run's colours.
     std::vector<std::optional<MaterialId>> run_materials() const { return ids_; }
 

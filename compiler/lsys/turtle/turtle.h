@@ -6,20 +6,17 @@
 #include <span>
 #include <vector>
 
-#include <boost/multiprecision/cpp_int.hpp>
-
 #include "compiler/lsys/parse/turtle_command.h"
 #include "compiler/lsys/turtle/bodies.h"
 #include "compiler/lsys/turtle/length_tally.h"
 #include "compiler/lsys/turtle/model_placer.h"
 #include "compiler/lsys/turtle/state.h"
+#include "compiler/support/big_count.h"
 #include "compiler/support/diagnostics.h"
 
 // The turtle (ABOP, sections 1.5 and 1.6, appendix C; docs/language.md, "The turtle").
 
 namespace graftal {
-
-using BigCount = boost::multiprecision::cpp_int;
 
 /// How far things may lie from where they belong.
 struct Displacement {

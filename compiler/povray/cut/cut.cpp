@@ -314,15 +314,6 @@ class Cutter {
 
 } // namespace
 
-std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
-                             const std::vector<ObjectBounds>& bounds, const View& view,
-                             const DetailOptions& detail, Diagnostics& diagnostics,
-                             const CutOptions& options) {
-    if (refuse_endless(graph, components, detail, diagnostics)) return std::nullopt;
-    const PreparedCut prepared = prepare_cut(graph, components, bounds, detail.preparing());
-    return cut_prepared(graph, prepared, view, detail, diagnostics, options);
-}
-
 std::optional<Cut> cut_prepared(const Graph& graph, const PreparedCut& prepared, const View& view,
                                 const DetailOptions& detail, Diagnostics& diagnostics,
                                 const CutOptions& options, const Control& control) {

@@ -26,16 +26,10 @@ struct CutOptions {
 struct PreparedCut;
 
 /// Cuts the graph for the view. Nothing, after an error in `diagnostics`, where the budget cannot be kept
-/// (with culling off) or the depth has no end; a budget that only allows a coarser picture gives that, with
-/// a warning that states the error reached. Requires a verified graph whose contraction is proved or acyclic.
-std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
-                             const std::vector<ObjectBounds>& bounds, const View& view,
-                             const DetailOptions& detail, Diagnostics& diagnostics,
-                             const CutOptions& options = {});
-
-/// The same, of a graph that is prepared already. Requires that it was by detail.preparing(), and that
-/// refuse_endless() lets it pass. The control follows the pieces that are chosen, unfolded and baked, in all
-/// tries.
+/// with culling off. A budget that only allows a coarser picture gives that, with a warning that states the
+/// error reached. Requires a verified graph whose contraction is proved or acyclic, which refuse_endless()
+/// lets pass, and which was prepared by detail.preparing(). The control follows the pieces that are chosen,
+/// unfolded and baked, in all tries.
 std::optional<Cut> cut_prepared(const Graph& graph, const PreparedCut& prepared, const View& view,
                                 const DetailOptions& detail, Diagnostics& diagnostics,
                                 const CutOptions& options = {}, const Control& control = no_control());

@@ -1,7 +1,6 @@
 #include "compiler/analysis/counts.h"
 
 #include <cmath>
-#include <limits>
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gmock/gmock.h>
@@ -141,30 +140,6 @@ TEST(Counts, WhatTakesTooLongIsGivenUp) {
             edges.push_back({i, (i * 31 + k) % 2000, half});
     }
     EXPECT_EQ(count(digraph(2000, edges), 100'000), std::nullopt);
-}
-
-TEST(Counts, ApproximateCountsAgreeWithTheExactOnes) {
-    for (const bool terminal : {false, true}) {
-        const Graph graph = trunk_and_two_branches(terminal);
-        const auto rows = approximate_leaf_counts(graph, strong_components(graph), 30);
-        ASSERT_EQ(rows.size(), 31u);
-        for (unsigned s = 0; s <= 30; ++s)
-            EXPECT_EQ(rows[s][graph.root], std::stod(*count(graph, s)));
-    }
-}
-
-TEST(Counts, ApproximateCountsOverflowToInfinityAndStayWithinMemory) {
-    const Graph graph = pound_sign(3);
-    const auto rows = approximate_leaf_counts(graph, strong_components(graph), 2000);
-    EXPECT_EQ(rows[2000][0], std::numeric_limits<double>::infinity());
-    const Graph chain = doublings(100'000);
-    const auto one = approximate_leaf_counts(chain, strong_components(chain), 4'000'000'000u);
-    ASSERT_EQ(one.size(), 1u);
-    EXPECT_EQ(one[0][chain.root], std::numeric_limits<double>::infinity());
-    const Graph cycle = long_cycle(100'000, [](std::size_t) { return scaled(.5, Vec3(0.0)); });
-    const auto capped = approximate_leaf_counts(cycle, strong_components(cycle), 4'000'000'000u);
-    EXPECT_EQ(capped.size(), max_approximate_counts / 100'000);
-    EXPECT_EQ(capped.back()[0], 1);
 }
 
 TEST(Decimal, EqualsTheLibraryAtEveryLength) {

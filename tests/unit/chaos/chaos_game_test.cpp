@@ -9,6 +9,7 @@
 #include "compiler/chaos/unroll.h"
 #include "compiler/support/file.h"
 #include "tests/unit/chaos/games.h"
+#include "tests/unit/languages/lower_file.h"
 
 namespace graftal {
 namespace {
@@ -267,7 +268,7 @@ TEST_P(ScenePoints, StayInTheBoundsAndFillThem) {
     SourceMap sources;
     Diagnostics diagnostics;
     Status status;
-    std::optional<Graph> graph = lower_model(GetParam(), {}, sources, diagnostics, status).graph;
+    std::optional<Graph> graph = test::lower_file(GetParam(), {}, sources, diagnostics, status).graph;
     ASSERT_TRUE(graph) << diagnostics.render(sources);
     const Played model = analysed(std::move(*graph));
     ASSERT_TRUE(model.contraction.verdict == Verdict::proved ||

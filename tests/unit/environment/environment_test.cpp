@@ -31,7 +31,7 @@ struct Asked {
     std::vector<Vec3> places;
     std::vector<std::vector<double>> values;
     Diagnostics diagnostics;
-    std::unique_ptr<Surroundings> environment;
+    std::unique_ptr<GrowthEnvironment> environment;
     bool answered = false;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -171,9 +172,76 @@ TEST_F(Verify, MaterialsAndSettings) {
     graph_.settings.ground = GroundSetting{0, "moss", {}};
     expect_flaw(root, "the ground's material 'moss' does not exist");
     graph_.settings.ground->material = "bark";
-    graph_.settings.camera = CameraSetting{};
-    graph_.settings.camera->up = Vec3(0, HUGE_VAL, 0);
-    expect_flaw(root, "a scene setting is not finite");
+}
+
+TEST_F(Verify, EveryNumberOfTheSettingsIsFinite) {
+    using Spoil = void (*)(SceneSettings&, double);
+    constexpr std::pair<const char*, Spoil> faults[] = {
+        {"camera", [](SceneSettings& s, double x) { s.camera->location = Vec3(0, x, 0); }},
+        {"camera", [](SceneSettings& s, double x) { s.camera->look_at = Vec3(x, 0, 0); }},
+        {"camera", [](SceneSettings& s, double x) { s.camera->up = Vec3(0, x, 0); }},
+        {"camera", [](SceneSettings& s, double x) { s.camera->direction = Vec3(0, 0, x); }},
+        {"camera", [](SceneSettings& s, double x) { s.camera->angle_deg = x; }},
+        {"camera", [](SceneSettings& s, double x) { s.camera->width = x; }},
+        {"camera", [](SceneSettings& s, double x) { s.camera->height = x; }},
+        {"camera", [](SceneSettings& s, double x) { s.camera->aperture = x; }},
+        {"camera", [](SceneSettings& s, double x) { s.camera->focus = Vec3(x, 0, 0); }},
+        {"light", [](SceneSettings& s, double x) { s.lights[1].location.z = x; }},
+        {"light", [](SceneSettings& s, double x) { s.lights[1].rgb.g = x; }},
+        {"light", [](SceneSettings& s, double x) { s.lights[1].angle_deg = x; }},
+        {"light", [](SceneSettings& s, double x) { s.lights[1].width = x; }},
+        {"light", [](SceneSettings& s, double x) { s.lights[1].height = x; }},
+        {"light", [](SceneSettings& s, double x) { s.lights[1].radius = x; }},
+        {"light", [](SceneSettings& s, double x) { s.lights[1].look_at = Vec3(0, x, 0); }},
+        {"background", [](SceneSettings& s, double x) { s.background->rgb.b = x; }},
+        {"background", [](SceneSettings& s, double x) { s.background->horizon = Rgb(x, 0, 0); }},
+        {"ground", [](SceneSettings& s, double x) { s.ground->height = x; }},
+        {"ground", [](SceneSettings& s, double x) { s.ground->rgb = Rgb(0, 0, x); }},
+        {"ground",
+         [](SceneSettings& s, double x) {
+             s.ground->area = FlatArea::round({x, 0}, 1);
+         }},
+        {"ground",
+         [](SceneSettings& s, double x) {
+             s.ground->area = FlatArea::round({0, 0}, x);
+         }},
+        {"ground",
+         [](SceneSettings& s, double x) {
+             s.ground->area = FlatArea::rectangle({0, 0}, {1, x});
+         }},
+        {"sky", [](SceneSettings& s, double x) { s.sky->zenith.r = x; }},
+        {"sky", [](SceneSettings& s, double x) { s.sky->horizon.r = x; }},
+        {"sky", [](SceneSettings& s, double x) { s.sky->below.r = x; }},
+        {"sky", [](SceneSettings& s, double x) { s.sky->turbidity = x; }},
+        {"sky", [](SceneSettings& s, double x) { s.sky->clouds = x; }},
+        {"sky", [](SceneSettings& s, double x) { s.sky->turn_deg = x; }},
+        {"sky", [](SceneSettings& s, double x) { s.sky->brightness = x; }},
+        {"film", [](SceneSettings& s, double x) { s.film->exposure = x; }},
+        {"film", [](SceneSettings& s, double x) { s.film->white_k = x; }},
+        {"haze", [](SceneSettings& s, double x) { s.haze->distance = x; }},
+        {"haze", [](SceneSettings& s, double x) { s.haze->base = x; }},
+        {"haze", [](SceneSettings& s, double x) { s.haze->height = x; }},
+        {"haze", [](SceneSettings& s, double x) { s.haze->rgb = Rgb(0, x, 0); }},
+    };
+    SceneSettings whole;
+    whole.camera.emplace();
+    whole.lights.resize(2);
+    whole.background.emplace();
+    whole.ground.emplace();
+    whole.sky.emplace();
+    whole.film.emplace();
+    whole.haze.emplace();
+    int number = 0;
+    for (const auto& [statement, spoil] : faults) {
+        SCOPED_TRACE(number++);
+        for (const double bad : {std::nan(""), HUGE_VAL}) {
+            graph_.settings = whole;
+            spoil(graph_.settings, bad);
+            expect_flaw(root, "the " + std::string(statement) + " has a number that is not finite");
+        }
+    }
+    graph_.settings = whole;
+    EXPECT_TRUE(verify(graph_).empty());
 }
 
 TEST_F(Verify, AllFlawsOfAGraphAreFound) {

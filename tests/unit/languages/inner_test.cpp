@@ -11,6 +11,7 @@
 
 #include "compiler/languages/lower.h"
 #include "compiler/lower/inner_parameters.h"
+#include "tests/unit/languages/lower_file.h"
 
 namespace graftal {
 namespace {
@@ -30,7 +31,8 @@ class Inner : public ::testing::Test {
     void lower(const std::string& name, const LowerOptions& options = {}) {
         sources_ = SourceMap();
         diagnostics_ = Diagnostics();
-        LoweredText model = lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_);
+        LoweredText model =
+            test::lower_file((folder_ / name).string(), options, sources_, diagnostics_, status_);
         graph_ = std::move(model.graph);
         derivation_ = std::move(model.notes.derivation);
     }

@@ -11,6 +11,7 @@
 #include "compiler/graph/print.h"
 #include "compiler/import/importers.h"
 #include "compiler/languages/lower.h"
+#include "tests/unit/languages/lower_file.h"
 
 namespace graftal {
 namespace {
@@ -30,7 +31,7 @@ class Use : public ::testing::Test {
         sources_ = SourceMap();
         diagnostics_ = Diagnostics();
         const LowerHelp help{.translator = translator_};
-        graph_ = lower_model((folder_ / name).string(), options, sources_, diagnostics_, status_, help).graph;
+        graph_ = test::lower_file((folder_ / name).string(), options, sources_, diagnostics_, status_, help).graph;
     }
     std::string errors() const { return diagnostics_.render(sources_); }
     const Object& object(std::string_view name) const {
@@ -265,13 +266,13 @@ TEST_F(Use, files_are_told_before_they_are_read_there_or_not) {
     const LowerHelp help{.on_file = [&](const std::string& path) {
         told.push_back(std::filesystem::path(path).lexically_relative(folder_).string());
     }};
-    lower_model((folder_ / "a.inst").string(), {.root = folder_.string()}, sources_, diagnostics_, status_,
-                help);
+    test::lower_file((folder_ / "a.inst").string(), {.root = folder_.string()}, sources_, diagnostics_,
+                     status_, help);
     EXPECT_THAT(told, ::testing::IsSupersetOf({"parts/leaf.inst", "none.inst"})) << errors();
     EXPECT_THAT(told, ::testing::Not(::testing::Contains("../far.inst"))) << "beyond the root";
     told.clear();
     write("a.inst", "use leaf = \"parts/leaf.inst\"\nobject a { union: leaf  instance: mesh \"a.obj\" }");
-    lower_model((folder_ / "a.inst").string(), {}, sources_, diagnostics_, status_, help);
+    test::lower_file((folder_ / "a.inst").string(), {}, sources_, diagnostics_, status_, help);
     EXPECT_THAT(told, UnorderedElementsAre("parts/leaf.inst", "parts/bark.png", "a.obj")) << errors();
 }
 

@@ -108,7 +108,6 @@ TEST(Clouds, NoSeamShows) {
 
 TEST(Clouds, TheSameAreTheSame) {
     const auto first = cloudy_picture(blue_sky(), clouds_of(0.4));
-    EXPECT_EQ(cloudy_picture(blue_sky(), clouds_of(0.4)), first) << "as long as it is in use";
     Clouds turned = clouds_of(0.4);
     turned.turn_deg = 30;
     const auto other = cloudy_picture(blue_sky(), turned);
@@ -119,6 +118,17 @@ TEST(Clouds, TheSameAreTheSame) {
         apart += glm::length(first->radiance(direction) - other->radiance(direction)) > 0.1;
     });
     EXPECT_GT(apart, 1000) << "another turn";
+}
+
+TEST(Clouds, AnOwnerDrawsAPictureOnceWhileItIsInUse) {
+    CloudPictures pictures, others;
+    auto first = pictures.picture(blue_sky(), clouds_of(0.4));
+    EXPECT_EQ(pictures.picture(blue_sky(), clouds_of(0.4)), first);
+    EXPECT_NE(others.picture(blue_sky(), clouds_of(0.4)), first) << "two owners share nothing";
+    const std::weak_ptr<const SkyPicture> unused = first;
+    first.reset();
+    EXPECT_TRUE(unused.expired()) << "the owner keeps no memory";
+    EXPECT_NE(pictures.picture(blue_sky(), clouds_of(0.3)), nullptr);
 }
 
 } // namespace

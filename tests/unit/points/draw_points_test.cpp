@@ -8,7 +8,7 @@
 
 #include "compiler/support/file.h"
 #include "runtime/points/glow.h"
-#include "runtime/points/projection.h"
+#include "runtime/points/point_projection.h"
 #include "runtime/system/temporary_directory.h"
 #include "runtime/trace/camera_rays.h"
 
@@ -170,7 +170,7 @@ TEST_F(Points, LieWhereRaysSeeThem) {
         view.camera.orthographic = parallel;
         view.camera.width = 3;
         const CameraRays rays(view);
-        const Projection projection(view.camera, view.size);
+        const PointProjection projection(view.camera, view.size);
         for (int y = 0; y < 48; ++y)
             for (int x = 0; x < 64; ++x) {
                 const Ray ray = rays.through(x + 0.3, y + 0.6);

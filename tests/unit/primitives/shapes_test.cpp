@@ -337,15 +337,15 @@ MeshData pile_of(std::uint32_t count) {
     return pile;
 }
 
-/// The most steps of rays that come from the front.
-std::uint64_t most_steps(const MeshData& data) {
+/// The most steps of rays that come from the front, of so many that are allowed.
+std::uint64_t most_steps(const MeshData& data, std::uint64_t allowed = UINT64_MAX) {
     const Primitive mesh = mesh_primitive("m.obj", data);
     std::uint64_t most = 0;
     for (int i = 0; i < 400; ++i) {
         const double radius = 0.001 + 0.4 * i / 400, angle = 2.4 * i;
         const Vec3 from(radius * std::cos(angle), radius * std::sin(angle), 5);
         PrimitiveHit hit;
-        EXPECT_TRUE(intersect(mesh, {from, {0.01, 0.02, -1}}, {}, hit));
+        EXPECT_TRUE(intersect(mesh, {from, {0.01, 0.02, -1}}, {}, hit, allowed));
         most = std::max(most, hit.steps);
     }
     return most;
@@ -365,6 +365,12 @@ TEST(Superellipsoid, ARayCountsItsPowers) {
 TEST(Mesh, RaysComeToFewOfManyTriangles) {
     EXPECT_LT(most_steps(fan_of(20000)), 1000u);
     EXPECT_LT(most_steps(pile_of(20000)), 300u);
+}
+
+TEST(Mesh, ARayTakesNoMoreStepsThanAreAllowed) {
+    constexpr std::uint64_t allowed = 20, a_leaf = 8;
+    EXPECT_GT(most_steps(pile_of(20000)), 2 * allowed);
+    EXPECT_LE(most_steps(pile_of(20000), allowed), allowed + a_leaf);
 }
 
 TEST(Mesh, RaysAlongEdgesMeetIt) {

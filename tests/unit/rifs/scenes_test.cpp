@@ -13,6 +13,7 @@
 
 #include "compiler/languages/lower.h"
 #include "compiler/support/bounds.h"
+#include "tests/unit/languages/lower_file.h"
 
 namespace graftal {
 namespace {
@@ -212,8 +213,8 @@ TEST_P(RifsScenes, setIsTheOneOfTheLiterature) {
     SourceMap sources;
     Diagnostics diagnostics;
     Status status;
-    const auto graph = lower_model(std::string(GRAFTAL_SOURCE_DIR) + "/scenes/" + known.file + ".rifs", {},
-                                   sources, diagnostics, status)
+    const auto graph = test::lower_file(std::string(GRAFTAL_SOURCE_DIR) + "/scenes/" + known.file + ".rifs",
+                                        {}, sources, diagnostics, status)
                            .graph;
     ASSERT_TRUE(graph) << status.message() << diagnostics.render(sources);
     EXPECT_EQ(diagnostics.render(sources), "");

@@ -9,7 +9,6 @@ namespace {
 
 TEST(CancelFlag, OneMadeFromNothingIsNeverRaised) {
     EXPECT_FALSE(CancelFlag().raised());
-    EXPECT_FALSE(CancelFlag().can_be_raised());
 }
 
 TEST(WorkMeter, AsksAfterEachInterval) {

@@ -1,12 +1,16 @@
-// Includes go only to the layers that CMakeLists.txt says a layer uses.
+// Includes go only to the layers that CMakeLists.txt says a layer uses; and no layer ends its process.
 
+#include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -16,8 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 using Layers = std::map<std::string, std::set<std::string>>; // folder -> folders that it may include
 
+const fs::path root = GRAFTAL_SOURCE_DIR;
+
 /// The table of graftal_layer() calls. A layer stands below all that it uses, so one read is enough.
-Layers layers_of(const fs::path& root) {
+Layers layers_of_project() {
     static const std::regex call(R"(^graftal_layer\((\S+)\s*(?:USES ([a-z/ ]+))?)");
     Layers layers;
     std::ifstream lists(root / "CMakeLists.txt");
@@ -35,30 +41,89 @@ Layers layers_of(const fs::path& root) {
     return layers;
 }
 
-TEST(Layers, IncludesGoDownTheListOnly) {
-    static const std::regex include(R"(^\s*#\s*include\s+"([^"]+)\")");
-    const fs::path root = GRAFTAL_SOURCE_DIR;
-    const Layers layers = layers_of(root);
-    ASSERT_GT(layers.size(), 10u);
-    int includes = 0;
-    for (const auto& [folder, allowed] : layers) {
-        if (!fs::exists(root / folder)) continue;
-        for (const fs::directory_entry& file : fs::directory_iterator(root / folder)) {
-            if (!file.is_regular_file() ||
-                (file.path().extension() != ".cpp" && file.path().extension() != ".h"))
+/// The layer that a folder belongs to: itself, or the nearest one around it. "" outside of all layers.
+std::string layer_of(fs::path folder, const Layers& layers) {
+    while (!folder.empty() && !layers.count(folder.string()))
+        folder = folder.parent_path();
+    return folder.string();
+}
+
+/// Calls `visit(file, text)` for each source in the folders of a list, and in the folders within them.
+template<typename Visit> void visit_sources(const std::vector<std::string>& folders, const Visit& visit) {
+    for (const std::string& folder : folders)
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
+            const fs::path file = entry.path().lexically_relative(root);
+            if (!entry.is_regular_file() || (file.extension() != ".cpp" && file.extension() != ".h"))
                 continue;
-            std::ifstream text(file.path());
-            for (std::string line; std::getline(text, line);) {
-                std::smatch match;
-                if (!std::regex_search(line, match, include)) continue;
-                const fs::path included = match[1].str();
-                EXPECT_TRUE(allowed.count(included.parent_path())) << file.path() << " includes " << included;
-                EXPECT_TRUE(fs::exists(root / included)) << file.path() << " includes " << included;
-                ++includes;
-            }
+            std::ifstream text(entry.path());
+            visit(file, std::string{std::istreambuf_iterator<char>(text), {}});
         }
+}
+
+/// Faults of a source in `folder`.
+std::vector<std::string> faulty_includes(const fs::path& folder, const std::string& text,
+                                         const Layers& layers) {
+    const std::string layer = layer_of(folder, layers);
+    if (layer.empty()) return {"it is in no layer of CMakeLists.txt"};
+    constexpr std::string_view include = "#include \"";
+    std::vector<std::string> faults;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with(include)) continue;
+        const fs::path included = line.substr(include.size(), line.rfind('"') - include.size());
+        if (!layers.at(layer).count(layer_of(included.parent_path(), layers)))
+            faults.push_back("it includes " + included.string());
     }
-    EXPECT_GT(includes, 50);
+    return faults;
+}
+
+TEST(Layers, IncludesGoDownTheListOnly) {
+    const Layers layers = layers_of_project();
+    ASSERT_GT(layers.size(), 10u);
+    int sources = 0;
+    visit_sources({"compiler", "runtime"}, [&](const fs::path& file, const std::string& text) {
+        ++sources;
+        for (const std::string& fault : faulty_includes(file.parent_path(), text, layers))
+            ADD_FAILURE() << file.string() << ": " << fault;
+    });
+    EXPECT_GT(sources, 500);
+}
+
+TEST(Layers, ARoomWithinALayerIsHeldToIt) {
+    const Layers layers{{"compiler/low", {"compiler/low"}},
+                        {"compiler/high", {"compiler/high", "compiler/low"}},
+                        {"compiler/high/own", {"compiler/high/own"}}};
+    const auto faults = [&](const char* folder, const std::string& included) {
+        return faulty_includes(folder, "#pragma once\n#include \"" + included + "\"\n", layers).size();
+    };
+    EXPECT_EQ(faults("compiler/low", "compiler/high/a.h"), 1u);
+    EXPECT_EQ(faults("compiler/low/room", "compiler/high/a.h"), 1u);
+    EXPECT_EQ(faults("compiler/low/room/inner", "compiler/high/room/a.h"), 1u);
+    EXPECT_EQ(faults("compiler/low/room", "compiler/low/a.h"), 0u);
+    EXPECT_EQ(faults("compiler/high", "compiler/low/room/a.h"), 0u);
+    EXPECT_EQ(faults("compiler/high/own/room", "compiler/low/a.h"), 1u) << "a layer within a layer";
+    EXPECT_EQ(faults("compiler/high", "tests/a.h"), 1u);
+    EXPECT_EQ(faults("compiler/nowhere", "compiler/low/a.h"), 1u);
+}
+
+/// A call by which a source would end or signal the process that it is part of; "" if there is none.
+std::string end_of_process(const std::string& text) {
+    for (const char* const call : {"abort(", "exit(", "_exit(", "quick_exit(", "raise(", "alarm(",
+                                   "setitimer(", "kill(getpid(", "kill(::getpid("})
+        for (std::size_t at = text.find(call); at != std::string::npos; at = text.find(call, at + 1))
+            if (at == 0 || (!std::isalnum(static_cast<unsigned char>(text[at - 1])) && text[at - 1] != '_'))
+                return call;
+    return {};
+}
+
+TEST(Layers, OnlyMainEndsItsProcess) {
+    visit_sources({"compiler", "runtime"}, [&](const fs::path& file, const std::string& text) {
+        if (file == "runtime/system/process.cpp") return; // ends the child that it has forked
+        EXPECT_EQ(end_of_process(text), "") << file.string();
+    });
+    EXPECT_EQ(end_of_process("if (late) ::kill(::getpid(), SIGALRM);"), "kill(::getpid(");
+    EXPECT_EQ(end_of_process("std::exit(3);"), "exit(");
+    EXPECT_EQ(end_of_process("::kill(child, SIGTERM); turtle.frame_exit(2);"), "");
 }
 
 } // namespace

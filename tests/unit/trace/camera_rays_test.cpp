@@ -66,33 +66,5 @@ TEST(CameraRays, SpanTheAngleOfViewAtUnitLength) {
     EXPECT_NEAR(std::acos(glm::dot(left, right)), std::numbers::pi / 6, 1e-13);
 }
 
-TEST(CameraRays, PovraySamplesTheMiddleOfAPixel) {
-    EXPECT_EQ(povray_sample_of_pixel.x, 0.5);
-    EXPECT_EQ(povray_sample_of_pixel.y, 0.5);
-    EXPECT_EQ(povray_sample_of_pixel.weight, 1);
-}
-
-TEST(CameraRays, PovrayAntialiasesByTheCornersOfCells) {
-    const std::vector<PixelSample> corners = povray_samples_of_pixel(1);
-    ASSERT_EQ(corners.size(), 4u);
-    EXPECT_EQ(corners[1].x, 1);
-    EXPECT_EQ(corners[1].y, 0);
-    EXPECT_EQ(corners[1].weight, 0.25);
-    const std::vector<PixelSample> nine = povray_samples_of_pixel(2);
-    ASSERT_EQ(nine.size(), 9u);
-    const double sixteenths[] = {1, 2, 1, 2, 4, 2, 1, 2, 1};
-    for (std::size_t i = 0; i < 9; ++i) {
-        EXPECT_EQ(nine[i].x, 0.5 * static_cast<double>(i % 3));
-        EXPECT_EQ(nine[i].y, 0.5 * static_cast<double>(i / 3));
-        EXPECT_EQ(nine[i].weight, sixteenths[i] / 16);
-    }
-    for (const int depth : {3, 5, 9}) {
-        double sum = 0;
-        for (const PixelSample& sample : povray_samples_of_pixel(depth))
-            sum += sample.weight;
-        EXPECT_EQ(sum, 1) << depth;
-    }
-}
-
 } // namespace
 } // namespace graftal

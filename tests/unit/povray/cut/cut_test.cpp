@@ -9,6 +9,7 @@
 
 #include "compiler/graph/unfold.h"
 #include "tests/unit/detail/models.h"
+#include "tests/unit/povray/cut/cut_graph.h"
 
 namespace graftal {
 namespace {
@@ -23,8 +24,8 @@ View front_view(double angle_deg = 40, double distance = 4) {
 
 std::optional<Cut> cut(const Graph& graph, const DetailOptions& options, Diagnostics& diagnostics,
                        const View& view = front_view(), bool flatten = false) {
-    return cut_graph(graph, strong_components(graph), test::bounds_of(graph), view, options, diagnostics,
-                     {.flatten = flatten});
+    return test::cut_graph(graph, strong_components(graph), test::bounds_of(graph), view, options,
+                           diagnostics, {.flatten = flatten});
 }
 
 Cut must_cut(const Graph& graph, const DetailOptions& options, const View& view = front_view(),
@@ -122,8 +123,9 @@ TEST(Cut, MirrorImagesShareOneMeshWhateverTheirBalls) {
         bounds[id].ball.radius *= 1 + 0.01 * static_cast<double>(id);
     for (const double error_px : {0.0, 2.0}) {
         Diagnostics diagnostics;
-        const std::optional<Cut> result = cut_graph(graph, strong_components(graph), bounds, front_view(),
-                                                    {.error_px = error_px, .steps = 7}, diagnostics);
+        const std::optional<Cut> result =
+            test::cut_graph(graph, strong_components(graph), bounds, front_view(),
+                            {.error_px = error_px, .steps = 7}, diagnostics);
         ASSERT_TRUE(result);
         EXPECT_EQ(result->bodies.size(), 1u);
     }
@@ -309,7 +311,8 @@ TEST(Cut, ChainsOfAHundredThousandObjectsAreNoProblem) {
     for (ObjectBounds& b : bounds)
         b = {{Vec3(-2), Vec3(2)}, {Vec3(0), 3.5}, false};
     Diagnostics diagnostics;
-    const auto result = cut_graph(graph, strong_components(graph), bounds, front_view(), {}, diagnostics);
+    const auto result =
+        test::cut_graph(graph, strong_components(graph), bounds, front_view(), {}, diagnostics);
     ASSERT_TRUE(result.has_value());
     EXPECT_EQ(result->leaf_count, 101);
 }

@@ -14,6 +14,7 @@
 #include "compiler/analysis/contraction.h"
 #include "compiler/detail/alike_set.h"
 #include "compiler/povray/cut/cut.h"
+#include "tests/unit/povray/cut/cut_graph.h"
 
 namespace graftal {
 namespace {
@@ -112,7 +113,7 @@ TEST(LeastWidth, ThinMapsMakeThinLinesWithoutGaps) {
         DetailOptions options;
         options.error_px = 0.5;
         Diagnostics diagnostics;
-        const auto cut = cut_graph(graph, components, bounds, view, options, diagnostics);
+        const auto cut = test::cut_graph(graph, components, bounds, view, options, diagnostics);
         ASSERT_TRUE(cut.has_value());
         EXPECT_LE(cut->error_px, 0.5) << thickness;
         EXPECT_LT(cut->estimated_bytes, 100'000'000u) << thickness;

@@ -15,6 +15,7 @@
 #include "compiler/detail/prepare.h"
 #include "compiler/detail/run_cells.h"
 #include "compiler/povray/cut/cut.h"
+#include "tests/unit/povray/cut/cut_graph.h"
 
 namespace graftal {
 namespace {
@@ -106,8 +107,8 @@ View front_view(const Bounded& model, double distance) {
 Cut cut_of(const Bounded& model, const DetailOptions& options, double distance = 1.5, bool flatten = false) {
     Diagnostics diagnostics;
     std::optional<Cut> cut =
-        cut_graph(model.graph, model.components, model.bounds, front_view(model, distance), options,
-                  diagnostics, {.flatten = flatten});
+        test::cut_graph(model.graph, model.components, model.bounds, front_view(model, distance), options,
+                        diagnostics, {.flatten = flatten});
     EXPECT_TRUE(cut) << diagnostics.render(SourceMap());
     return cut ? std::move(*cut) : Cut();
 }
@@ -205,8 +206,8 @@ TEST(RunCut, WhatIsOutOfSightIsNamedWhereMemoryLacks) {
     options.memory_bytes = 30'000'000;
     const auto hints = [&](double distance) {
         Diagnostics diagnostics;
-        EXPECT_TRUE(cut_graph(model.graph, model.components, model.bounds, front_view(model, distance),
-                              options, diagnostics));
+        EXPECT_TRUE(test::cut_graph(model.graph, model.components, model.bounds, front_view(model, distance),
+                                    options, diagnostics));
         return diagnostics.render(SourceMap());
     };
     const std::string near = hints(0.05), far = hints(3);

@@ -32,11 +32,11 @@ struct NearPiece {
 /// few such maps occur (the neighbour maps of Bandt and Graf 1992). So a map that equals an earlier one
 /// within the rounding of both is taken to be that one, and the rounding starts anew. Where none recurs, a
 /// neighbour is lost once rounding hides where it lies.
-class Surroundings {
+class Neighbourhood {
   public:
     /// `steps`: levels in all; nothing if there is no limit.
-    Surroundings(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
-                 std::optional<unsigned> steps);
+    Neighbourhood(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
+                  std::optional<unsigned> steps);
 
     enum class Outcome { done, flat, too_many, no_level };
 

@@ -12,9 +12,9 @@
 namespace graftal {
 
 /// Where points fall on a picture: the other way round of trace/camera_rays.h.
-class Projection {
+class PointProjection {
   public:
-    Projection(const Camera& camera, ImageSize size)
+    PointProjection(const Camera& camera, ImageSize size)
         : eye_(camera.location), direction_(camera.direction), perspective_(!camera.orthographic),
           size_(size) {
         const double half_width =

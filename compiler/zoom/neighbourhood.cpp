@@ -1,4 +1,4 @@
-#include "compiler/zoom/surroundings.h"
+#include "compiler/zoom/neighbourhood.h"
 
 #include <algorithm>
 #include <array>
@@ -54,18 +54,18 @@ double distance_to_box(const Affine& map, const Box& box, Vec3 point) {
 
 } // namespace
 
-Surroundings::Surroundings(const Graph& graph, const Components& components,
-                           const std::vector<ObjectBounds>& bounds, std::optional<unsigned> steps)
+Neighbourhood::Neighbourhood(const Graph& graph, const Components& components,
+                             const std::vector<ObjectBounds>& bounds, std::optional<unsigned> steps)
     : graph_(graph), components_(components), bounds_(bounds), steps_(steps) {
     own_.object = graph.root;
 }
 
-double Surroundings::radius(const NearPiece& piece) const {
+double Neighbourhood::radius(const NearPiece& piece) const {
     return norm(piece.frame_from_piece.linear) * std::max(bounds_[piece.object].ball.radius, 0.0);
 }
 
 /// Nothing where no level is left for it.
-std::optional<NearPiece> Surroundings::child(const NearPiece& piece, const Instance& instance) const {
+std::optional<NearPiece> Neighbourhood::child(const NearPiece& piece, const Instance& instance) const {
     const PathState path =
         graftal::descend({piece.object, piece.frame_from_piece, piece.tint, piece.material, piece.levels},
                          instance, components_);
@@ -75,7 +75,7 @@ std::optional<NearPiece> Surroundings::child(const NearPiece& piece, const Insta
     return child;
 }
 
-bool Surroundings::in_reach(const NearPiece& piece, Vec3 focus, double reach) const {
+bool Neighbourhood::in_reach(const NearPiece& piece, Vec3 focus, double reach) const {
     const ObjectBounds& bounds = bounds_[piece.object];
     if (graph_.objects[piece.object].primitive == PrimitiveKind::plane) {
         const Mat3& linear = piece.frame_from_piece.linear;
@@ -92,15 +92,15 @@ bool Surroundings::in_reach(const NearPiece& piece, Vec3 focus, double reach) co
     return distance_to_box(piece.frame_from_piece, bounds.box, focus) <= reach + piece.error;
 }
 
-bool Surroundings::divisible(const NearPiece& piece) const {
+bool Neighbourhood::divisible(const NearPiece& piece) const {
     const Object& object = graph_.objects[piece.object];
     if (object.primitive || object.run) return false;
     // Where no level is left, the object is drawn by what ends it.
     return !steps_ || !components_.unending[piece.object] || piece.levels < *steps_;
 }
 
-bool Surroundings::keep(NearPiece first, Vec3 focus, double reach, double size,
-                        std::vector<NearPiece>& kept) {
+bool Neighbourhood::keep(NearPiece first, Vec3 focus, double reach, double size,
+                         std::vector<NearPiece>& kept) {
     Walk<NearPiece> walk;
     walk.push(std::move(first));
     for (NearPiece piece; walk.next(piece);) {
@@ -123,7 +123,7 @@ bool Surroundings::keep(NearPiece first, Vec3 focus, double reach, double size,
     return true;
 }
 
-Surroundings::Outcome Surroundings::descend(std::uint32_t instance, Vec3 focus, double reach) {
+Neighbourhood::Outcome Neighbourhood::descend(std::uint32_t instance, Vec3 focus, double reach) {
     const std::vector<Instance>& instances = graph_.objects[own_.object].instances;
     const Instance& step = instances[instance];
     if (is_singular(step.parent_from_child)) return Outcome::flat;
@@ -158,7 +158,7 @@ Surroundings::Outcome Surroundings::descend(std::uint32_t instance, Vec3 focus, 
     return Outcome::done;
 }
 
-bool Surroundings::spread(Vec3 focus, double reach, double size) {
+bool Neighbourhood::spread(Vec3 focus, double reach, double size) {
     std::vector<NearPiece> kept;
     if (!keep(own_, focus, reach, size, kept)) return false;
     for (const NearPiece& piece : others_)
@@ -167,7 +167,7 @@ bool Surroundings::spread(Vec3 focus, double reach, double size) {
     return true;
 }
 
-void Surroundings::snap(NearPiece& piece) {
+void Neighbourhood::snap(NearPiece& piece) {
     std::vector<KnownMap>& of_pair = known_of_pair_[{own_.object, piece.object}];
     const Ball& ball = bounds_[piece.object].ball;
     const double most = most_snapped * bounds_[own_.object].ball.radius;
@@ -192,7 +192,7 @@ void Surroundings::snap(NearPiece& piece) {
 }
 
 /// Sorts, so that equal surroundings come in one order whatever way led there, and drops what coincides.
-void Surroundings::tidy(std::vector<NearPiece>& pieces, double size) const {
+void Neighbourhood::tidy(std::vector<NearPiece>& pieces, double size) const {
     struct Keyed {
         std::array<double, 13> key;
         NearPiece piece;

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "compiler/languages/lower.h"
+#include "compiler/support/file.h"
+
+namespace graftal::test {
+
+/// lower_text() of a file, or of a model in one.
+inline LoweredText lower_file(const std::string& path, const LowerOptions& options, SourceMap& sources,
+                              Diagnostics& diagnostics, Status& status, const LowerHelp& help = {}) {
+    std::string text;
+    status = read_text(help.translator.model_path(path).file, text);
+    return status.ok() ? lower_text(path, std::move(text), options, sources, diagnostics, help)
+                       : LoweredText{};
+}
+
+} // namespace graftal::test

@@ -24,7 +24,7 @@ constexpr std::size_t most_sources = 100;
 constexpr std::size_t most_regions = 1000;
 constexpr double most_shadow_depth = 64;
 
-/// What a statement of the environment says, and how many numbers it takes.
+/// A statement of the environment, and the range of how many numbers it takes.
 struct EnvironmentForm {
     std::string_view kind;
     std::size_t least, most;
@@ -185,7 +185,7 @@ class SurroundingsBuilder {
         flatten(statement, n, 0);
     }
 
-    /// By the direction that begins at number k, if there is one.
+    /// Flattens along the direction that begins at number k, if there is one.
     void flatten(const LsysEnvironment& statement, const std::vector<double>& n, std::size_t k) {
         if (n.size() == k) return;
         if (n.size() < k + 3) return refuse(statement, k, "a direction is x, y, z");

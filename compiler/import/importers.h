@@ -14,7 +14,7 @@ namespace graftal {
 /// The formats of other programs. To add one: its files in this folder, and a row of this table.
 std::span<const Importer> importers();
 
-/// How a command or a `use` names a model.
+/// The name of a model in a command or a `use`.
 struct ModelPath {
     std::string file;
     std::string model; ///< in a foreign file; "" where only the file is named
@@ -34,7 +34,7 @@ bool is_foreign(std::string_view file_name);
 /// old Windows.
 std::string model_text(std::string_view file_name, std::string bytes);
 
-/// How files beside a foreign one are found.
+/// Limits on the search for files beside a foreign one.
 struct BesideOptions {
     std::string root{};                                ///< they must lie in this folder; "": anywhere
     std::function<void(const std::string&)> on_file{}; ///< hears of each that is asked for
@@ -62,7 +62,7 @@ std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& s
 
 /// A name of letters, digits and '_' for a block, a material or a file, that begins with a letter.
 std::string plain_name(std::string_view name);
-/// The same with a capital, for a block: primitives have small letters.
+/// A plain name with a capital, for a block: primitives have small letters.
 std::string block_name(std::string_view name);
 
 } // namespace graftal

@@ -11,7 +11,7 @@
 
 namespace graftal {
 
-/// What a model is.
+/// The graph of a model, and what lowering noted of it.
 struct LoweredText {
     /// Verified. Nothing after errors, of an orbit, and where LowerOptions::may_draw_nothing applies.
     std::optional<Graph> graph;
@@ -26,8 +26,8 @@ struct LoweredText {
 LoweredText lower_model(const std::string& path, const LowerOptions& options, SourceMap& sources,
                         Diagnostics& diagnostics, Status& status, const LowerHelp& help = {});
 
-/// The same as lower_model for a text already at hand, as the model `name` (which decides the language and
-/// where used files are looked up).
+/// Lowers a text already at hand as lower_model() lowers a file. The model's `name` decides the language and
+/// where used files are looked up.
 LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,
                        SourceMap& sources, Diagnostics& diagnostics, const LowerHelp& help = {});
 

@@ -51,7 +51,7 @@ class CellGrid {
                      {middle[0] + 1, middle[1] + 1, middle[2] + 1}, look);
     }
 
-    /// The same for all within a distance along each axis.
+    /// Calls look(thing) for all within a distance along each axis, and some others, until it says false.
     template<typename Look> void near(Vec3 place, double distance, const Look& look) const {
         look_between(cell_of(place - distance, size_), cell_of(place + distance, size_), look);
     }

@@ -9,7 +9,7 @@
 #include "compiler/support/affine.h"
 #include "compiler/support/diagnostics.h"
 
-// What surrounds a model while it grows, and answers its queries after each step: Mech and Prusinkiewicz
+// The surroundings of a growing model, which answer its queries after each step: Mech and Prusinkiewicz
 // 1996, "Visual models of plants interacting with their environment" (docs/language.md, "The environment").
 
 namespace graftal {
@@ -27,11 +27,11 @@ struct EnvironmentRegion {
     Vec3 b{0.0};       ///< greatest corner
     double extent = 0; ///< radius; of the half-space {p: a.p <= extent}
 
-    /// How far the place is from its surface; negative inside.
+    /// The distance of the place from the surface; negative inside.
     double distance(Vec3 place) const;
 };
 
-/// Light from infinitely far: out of this direction, a unit vector, so much.
+/// Light from infinitely far, out of this direction, a unit vector.
 struct EnvironmentSource {
     Vec3 direction{0.0};
     double intensity = 0;

@@ -36,7 +36,7 @@ std::vector<EnvironmentSource> uniform_sky(Vec3 up) {
     return sky;
 }
 
-/// Of two discs whose centres lie so far apart, the area that they share.
+/// The area that two discs share whose centres lie this far apart.
 double shared_area(double a, double b, double distance) {
     if (distance >= a + b) return 0;
     const double small = std::min(a, b), large = std::max(a, b);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What an instance says beside its master, as a table: a new attribute is a field of Instance and a row.
+// Attributes of an instance beside its master, as a table: a new one is a field of Instance and a row.
 
 #include <array>
 #include <bit>

@@ -22,9 +22,9 @@ struct Components {
 /// are not edges of it.
 Components strong_components(const Graph& graph);
 
-/// By object: whether its terminal leads back to it, by instances and terminals. Such an object would be
-/// drawn by itself where it is too small to see, without end. (Terminals of unending objects never do: they
-/// end.)
+/// A flag for each object: whether its terminal leads back to it, by instances and terminals. Such an object
+/// would be drawn within itself where it is too small to see, without end. (Terminals of unending objects
+/// never do: they end.)
 std::vector<bool> terminals_that_return(const Graph& graph, const Components& components);
 
 } // namespace graftal

@@ -58,8 +58,8 @@ struct Instance {
     std::optional<MaterialId> material; ///< nothing: as the parent says
     Span span;
     std::uint32_t levels = levels_of_master; ///< that it takes, where it states them ("Levels")
-    /// Its share of the object's random points (chaos/chances.h), relative to the other instances of the
-    /// object; 0: not stated, or none beside others that are. Pictures of surfaces do not depend on it.
+    /// The instance's share of the object's random points (chaos/chances.h), relative to the other
+    /// instances; 0: not stated, or none beside others that are. Pictures of surfaces do not depend on it.
     double chance = 0;
 };
 

@@ -17,9 +17,9 @@ struct WalkStep {
 /// states (Grassmann, Taksar and Heyman 1985: elimination without subtraction), by iteration for more.
 std::vector<double> stationary_shares(std::uint32_t states, const std::vector<WalkStep>& steps);
 
-/// How often a walk that starts in state s `begins[s]` times passes through each state, the starts included,
-/// where it leaves the states for good sooner or later: x = begins + x P. Requires that the chances from each
-/// state add up to 1 or less, and that every state leads to one from which they fall short of 1.
+/// The mean numbers of visits to each state of walks that start in state s `begins[s]` times, starts
+/// included, and leave the states for good: x = begins + x P. Requires that no state's chances add up to
+/// more than 1, and that every state leads to one whose chances add up to less.
 std::vector<double> expected_visits(const std::vector<double>& begins, const std::vector<WalkStep>& steps);
 
 } // namespace graftal

@@ -10,7 +10,7 @@
 
 namespace graftal {
 
-/// How a surface takes light; the numbers are POV-Ray's finish, which the tracer follows too (optics.h).
+/// The finish of a surface; the numbers are those of POV-Ray, which the tracer follows too (optics.h).
 struct Material {
     std::string name;
     Rgb rgb{0.8};
@@ -41,8 +41,8 @@ struct Material {
     bool operator==(const Material& other) const;
 
     bool is_transparent() const { return transparency > 0; }
-    /// How much of its colour the surface gives to light on its way through. Of what absorbs, the inside
-    /// does.
+    /// The share of its colour that the surface gives to light on its way through; 0 where the inside
+    /// absorbs.
     double surface_filter() const { return absorption > 0 ? 0 : filter; }
     /// Whether it covers what is behind it by a share, and does nothing else to it.
     bool is_veil() const { return is_transparent() && filter == 0 && !has_coat(); }
@@ -82,14 +82,14 @@ inline constexpr FinishNumber finish_numbers[] = {
 /// Whether the finishes are equal, whatever the colours.
 bool same_finish(const Material& a, const Material& b);
 
-/// What light meets within a solid.
+/// The medium that light meets within a solid.
 struct Interior {
     double ior = 1;
     Rgb absorbed{0.0}; ///< optical depth of a unit of length
     bool operator==(const Interior&) const = default;
 };
 
-/// Between the surfaces of what has this material. POV-Ray counts only rays that bend: none goes straight on.
+/// The medium between surfaces of this material. POV-Ray counts only rays that bend: none goes straight on.
 Interior interior_of(const Material& material);
 
 } // namespace graftal

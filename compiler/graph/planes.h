@@ -7,7 +7,7 @@
 
 namespace graftal {
 
-/// By object: whether it is a plane, or reaches one by instances. O(graph).
+/// A flag for each object: whether it is a plane, or reaches one by instances. O(graph).
 std::vector<bool> plane_holders(const Graph& graph, const Components& components);
 
 } // namespace graftal

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a primitive is: a kind, and what the kind leaves open. What primitives look like is told in
-// compiler/primitives, one file each.
+// A primitive: a kind, and what the kind leaves open. Files in compiler/primitives, one for each kind, tell
+// what primitives look like.
 
 #include <array>
 #include <compare>
@@ -71,8 +71,8 @@ inline constexpr std::size_t primitive_kind_count = all_primitive_kinds.size();
 /// The upper radii of frusta are multiples of 1 / frustum_steps.
 inline constexpr int frustum_steps = 128;
 
-/// What a primitive is made of where two bytes do not say it: control points, outlines, triangles. Immutable,
-/// and shared by all who name it. Its name says all of it, so that equal names are equal shapes.
+/// The data of a primitive where two bytes do not say it: control points, outlines, triangles. Immutable,
+/// and shared by all primitives that name it. Its name says all of it, so that equal names are equal shapes.
 class Shape {
   public:
     explicit Shape(std::string name) : name_(std::move(name)) {}
@@ -80,10 +80,10 @@ class Shape {
     Shape& operator=(const Shape&) = delete;
     virtual ~Shape() = default;
 
-    /// As `.inst` writes the primitive.
+    /// The primitive as `.inst` writes it.
     const std::string& name() const { return name_; }
 
-    /// What follows from the shape alone, made by the first that asks for it under this key, which stands for
+    /// A value that follows from the shape alone, made by the first call under this key, which stands for
     /// one function. Safe to call from many threads; the value lives as long as the shape.
     template<typename Value, typename Make> const Value& derived(const void* key, const Make& make) const {
         const std::lock_guard lock(mutex_);
@@ -111,7 +111,7 @@ class Primitive {
         : kind_(kind), shape_(std::move(shape)) {}
 
     constexpr PrimitiveKind kind() const { return kind_; }
-    /// Of a frustum its steps; 0 of others.
+    /// The steps of a frustum; 0 of others.
     constexpr std::uint8_t steps() const { return steps_; }
     /// Null unless the kind is shaped.
     const std::shared_ptr<const Shape>& shape() const { return shape_; }

@@ -170,7 +170,7 @@ class Printer {
         out_ += "}\n\n";
     }
 
-    /// As the instances that it means.
+    /// Prints the instances that a run stands for.
     void print_run(const Object& object) {
         for (std::size_t i = 0; i < object.run->size(); ++i) {
             const RunItem& item = (*object.run)[i];

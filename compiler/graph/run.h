@@ -13,7 +13,7 @@
 
 namespace graftal {
 
-/// What an item of a run is: a sphere, or a cylinder, cone or frustum. One byte.
+/// The shape of an item of a run: a sphere, or a cylinder, cone or frustum. One byte.
 class RunShape {
   public:
     static constexpr std::size_t count = frustum_steps + 2;
@@ -25,12 +25,12 @@ class RunShape {
                      : kind == PrimitiveKind::cylinder ? frustum_steps
                      : kind == PrimitiveKind::cone     ? 0
                                                        : unsound) {}
-    /// Of another kind it is unsound.
+    /// Unsound for a primitive of another kind.
     RunShape(const Primitive& primitive); // NOLINT: likewise
 
     constexpr bool is_sphere() const { return top_steps_ == sphere; }
     constexpr bool is_sound() const { return top_steps_ <= sphere; }
-    /// At the far end, as a share of the radius at the base. Not of a sphere.
+    /// The radius at the far end, as a share of the radius at the base. Not of a sphere.
     constexpr double top_radius() const { return static_cast<double>(top_steps_) / frustum_steps; }
     Primitive primitive() const {
         if (is_sphere()) return PrimitiveKind::sphere;
@@ -83,7 +83,7 @@ Affine run_from_body(const RunItem& item);
 /// Where the ball at its end lies.
 Affine run_from_ball(const RunItem& item);
 
-/// The same, turned anyhow about the axis: sooner found, and what is round looks alike.
+/// The places of body and ball, turned anyhow about the axis: cheaper, and round bodies look alike.
 Affine run_from_round_body(const RunItem& item);
 Affine run_from_round_ball(const RunItem& item);
 

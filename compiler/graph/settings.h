@@ -14,7 +14,7 @@
 
 namespace graftal {
 
-/// What the model says about the camera; what it leaves out is framed automatically (scene/framing.h).
+/// The model's settings of the camera; others are framed automatically (scene/framing.h).
 struct CameraSetting {
     std::optional<Vec3> location;
     std::optional<Vec3> look_at;

@@ -11,7 +11,7 @@ namespace graftal {
 
 namespace {
 
-/// Which instances of an object are drawn.
+/// The instances of an object that are drawn.
 enum class Draw : std::uint8_t { all, ending, terminal };
 
 struct Frame {

@@ -27,7 +27,7 @@ bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/// As the lexers have it: a letter or underscore, then letters, digits, underscores, and dots before letters.
+/// Whether lexers take it for a name: a letter or '_', then letters, digits, '_', and dots before letters.
 bool is_plain_name(std::string_view name) {
     if (name.empty() || !is_letter(name.front()) || name.back() == '.') return false;
     for (std::size_t i = 1; i < name.size(); ++i) {

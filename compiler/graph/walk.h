@@ -14,7 +14,7 @@
 
 namespace graftal {
 
-/// What ends a walk early, except that nothing is left.
+/// The limits that end a walk early.
 struct WalkLimits {
     std::uint64_t most_visits = UINT64_MAX;
     WorkMeter* meter = nullptr; ///< counts visits, and throws Cancelled; null: nobody does

@@ -24,7 +24,7 @@ std::vector<TextLine> lines_of(std::string_view text, std::size_t begin, std::si
 
 std::string_view trimmed(std::string_view text);
 
-/// What stands in a comment of ours: one line of ASCII. Old files have other letters in code pages that they
+/// The text as one line of ASCII for a comment of ours. Old files have other letters in code pages that they
 /// do not name.
 std::string comment_text(std::string_view text);
 
@@ -50,14 +50,14 @@ LeadingNumber leading_number(std::string_view text);
 /// character is an error.
 class CodeReader {
   public:
-    /// It must outlive this.
+    /// `file` must outlive this.
     explicit CodeReader(const ForeignFile& file) : file_(file) {}
 
     /// The signs of the character at `at`, which moves past it; none after an error. The text begins at
     /// `begin` in the file, or all of it stands at `whole`. Requires at < text.size().
     std::string next(std::string_view text, std::size_t& at, std::size_t begin,
                      std::optional<std::uint32_t> whole = {});
-    /// Those of a whole text, for whose faults `span` stands.
+    /// The signs of a whole text, whose faults are reported at `span`.
     std::string signs(std::string_view text, Span span);
 
   private:

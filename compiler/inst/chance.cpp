@@ -12,7 +12,7 @@ namespace {
 using Calls = std::vector<const Expression*>;
 using Names = std::set<std::string, std::less<>>;
 
-/// By recursion, as deep as the parser allows.
+/// Collects by recursion, as deep as the parser allows.
 void collect(const Expression& expression, Calls& calls) {
     if (expression.kind == Expression::Kind::call && chance_function(expression.text))
         calls.push_back(&expression);

@@ -8,7 +8,7 @@ namespace graftal {
 
 namespace {
 
-/// By object: no instance is left once the instances of empty objects are gone, and so on.
+/// A flag for each object: no instance is left once the instances of empty objects are gone, and so on.
 std::vector<bool> find_empty(const Graph& graph) {
     std::vector<std::vector<ObjectId>> users(graph.objects.size());
     std::vector<std::size_t> left(graph.objects.size());

@@ -28,13 +28,13 @@ HueTurn whole_degrees(double degrees);
 /// Nothing if the denominator would exceed 100,000: a recursion has as many states.
 std::optional<HueTurn> sum(HueTurn a, HueTurn b);
 
-/// How far each instance of an object turns the colours of its master.
+/// The turns of the colours on the way from an object to the masters of its instances.
 struct ObjectHues {
     std::vector<HueTurn> instances; ///< as many as the object has
     HueTurn terminal;
 };
 
-/// By object; others have no turns.
+/// The turns by object; objects that it does not name have none.
 using HueTable = std::map<ObjectId, ObjectHues>;
 
 /// Carries out the turns. If paths reach an object with different sums of turns, the graph gets one copy of

@@ -29,7 +29,7 @@ std::string pattern_text(const InstDefinition& definition) {
     return definition.parameters.empty() ? text : text + ")";
 }
 
-/// As the text has it: `f(0, n)`.
+/// The head of the definition, as the text has it: `f(0, n)`.
 std::string signature(const InstDefinition& definition) {
     std::string text = definition.name;
     const char* separator = "(";

@@ -19,8 +19,8 @@ class InstIndex {
     /// Reports duplicates and names that cannot be defined. `module` must outlive the index.
     InstIndex(const InstModule& module, Diagnostics& diagnostics);
 
-    /// What `name` with these arguments is defined by: numbers in a pattern are preferred to names, from left
-    /// to right; null if nothing matches. `object_name` is inst_object_name(name, arguments).
+    /// The definition of `name` with these arguments; null if nothing matches. Numbers in a pattern are
+    /// preferred to names, from left to right. `object_name` is inst_object_name(name, arguments).
     const InstDefinition* match(std::string_view name, const std::vector<double>& arguments,
                                 std::string_view object_name) const;
 

@@ -207,7 +207,7 @@ class InkStates {
         if (!fresh) return known->second;
         Material copy = material ? source_.materials[*material] : Material();
         if (!material) copy.name = "plain";
-        // What the ink leaves out goes through as it is, the rest as the material says.
+        // Light that the ink leaves out goes through as it is, the rest as the material says.
         const double coloured = copy.transparency * copy.filter * steps / 64.0;
         copy.transparency = 1 - (1 - copy.transparency) * steps / 64.0;
         copy.filter = copy.transparency > 0 ? coloured / copy.transparency : 1;

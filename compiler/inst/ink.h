@@ -31,7 +31,7 @@ struct InkStep {
     Ink ink;           ///< that is set
 };
 
-/// What an instance does to the ink on the way to its master.
+/// The change of the ink on the way from an instance to its master.
 class InkChange {
   public:
     /// More steps in one change are an error: each copy of a repeat may add some.
@@ -49,25 +49,24 @@ class InkChange {
     std::vector<InkStep> steps_;
 };
 
-/// How the instances of an object change the ink.
+/// The changes of the ink by the instances of an object.
 struct ObjectInks {
     std::vector<InkChange> instances; ///< as many as the object has
     InkChange terminal;
 };
 
-/// By object; others change nothing.
+/// The changes of the ink by object; other objects change nothing.
 using InkTable = std::map<ObjectId, ObjectInks>;
 
 /// Nothing after an error.
 std::optional<InkChange> lower_ink(const std::vector<InstInkStep>& steps, const Environment& environment,
                                    Diagnostics& diagnostics, const ChanceDraws& draws);
 
-/// Hands inks down to the primitives, which get them as tints that cover, and as materials where alpha is
-/// below
-/// 1. If paths reach an object with different inks, the graph gets one copy of it for each; inks that differ
-/// by less than 2^-16 of a channel's range are one. Once the graph has 100,000 objects, an object takes the
-/// nearest ink that it has already, with a note. `hues` gets rows for the copies. An error, at `place`: more
-/// objects than the options allow.
+/// Hands inks down to the primitives, which get them as tints that cover; where alpha is not 1, as
+/// materials. If paths reach an object with different inks, the graph gets one copy of it for each; inks
+/// that differ by less than 2^-16 of a channel's range are one. Once the graph has 100,000 objects, an
+/// object takes the nearest ink that it has already, with a note. `hues` gets rows for the copies. An error,
+/// at `place`: more objects than the options allow.
 bool apply_inks(Graph& graph, const InkTable& inks, HueTable& hues, Span place, Lowering& lowering);
 
 } // namespace graftal

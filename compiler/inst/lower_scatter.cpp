@@ -19,12 +19,12 @@ namespace graftal {
 
 namespace {
 
-/// Of an area less than this share of which is left, one cannot say well how much that is.
+/// The least share of an area that exceptions may leave: smaller shares are too few samples.
 constexpr double least_share = 0.01;
 constexpr double largest_seed = 9007199254740992; // 2^53
 
-/// What the random numbers of a scatter are for: each use has a sequence of its own, so that a line more or
-/// less leaves what the others say where it is.
+/// The uses of the random numbers of a scatter. Each use has a sequence of its own, so that a line more or
+/// less leaves the numbers of other lines as they are.
 enum Use : std::uint64_t { places, masters, turns, leans, lean_directions, sizes, first_tint };
 
 struct Range {

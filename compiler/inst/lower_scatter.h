@@ -12,7 +12,7 @@
 
 namespace graftal {
 
-/// What a scatter needs to know of the model around it.
+/// The model around a scatter, as far as the scatter needs to know it.
 struct ScatterContext {
     const Environment& environment;
     const SceneSettings& settings;     ///< for what `ground` is

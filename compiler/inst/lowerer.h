@@ -72,9 +72,9 @@ class InstLowerer {
     /// there is no such object.
     std::optional<ObjectId> part_of_used(std::string_view name, const std::vector<double>& arguments,
                                          Span place);
-    /// The same without a message where there is none: Lowering::part_missing.
+    /// The object of part_of_used(); if there is none, sets Lowering::part_missing, without a message.
     std::optional<ObjectId> import_called(std::string_view name, const std::vector<double>& arguments);
-    /// How many arguments a used model takes at most.
+    /// Most arguments that a used model takes.
     std::size_t inner_count(std::string_view name) const;
     /// The used model that a name stands for or lies in; null for the file's own names.
     const std::pair<const std::string, Span>* use_of(std::string_view name) const;
@@ -115,9 +115,9 @@ class InstLowerer {
     void lower_object(std::size_t index);
     /// Counts evaluated words; false if they are too many.
     bool count_work(std::size_t words);
-    /// The same for an object; too many are an error that names the chain of objects.
+    /// Counts the words of an object; too many are an error that names the chain of objects.
     bool work(std::size_t words);
-    /// The same for a copy that the repeats of a group make, which the error then names.
+    /// Counts a copy that the repeats of a group make; too many are an error at these repeats.
     bool copy_work(const InstGroup& group);
     Environment environment_of(const InstDefinition& definition, const std::vector<double>& arguments) const;
     /// Hands on the errors of one object. Its definition is then left alone: for other arguments the same
@@ -166,7 +166,7 @@ class InstLowerer {
     std::uint64_t next_place() { return CounterRandom::scrambled(reached_[current_].key ^ ++place_); }
     /// Random numbers for the calls of a group.
     void draw(const InstGroup& group);
-    /// By weight, among the definitions of the same name and parameters; null after an error.
+    /// Chooses by weight among definitions of the same name and parameters; null after an error.
     const InstDefinition* choose(const InstDefinition& definition, const std::vector<double>& arguments,
                                  std::uint64_t key, std::uint32_t variant);
 

@@ -16,7 +16,7 @@ struct ScatterArea {
     std::vector<FlatArea> without;
 
     bool contains(Vec2 p) const;
-    /// What is left of `within`, as 256 times 256 samples find it: exact where nothing is left out.
+    /// The size of `within` less `without`, by 256 times 256 samples: exact where nothing is left out.
     double size() const;
 };
 
@@ -38,7 +38,7 @@ std::vector<Vec2> uniform_points(const ScatterArea& area, std::size_t count, Cou
 std::vector<Vec2> jittered_points(const ScatterArea& area, std::size_t count, CounterRandom random,
                                   WorkMeter* meter = nullptr);
 
-/// As the seeds of a sunflower (Vogel 1979), about the centre of the area.
+/// Places like the seeds of a sunflower (Vogel 1979), about the centre of the area.
 std::vector<Vec2> spiral_points(const ScatterArea& area, std::size_t count);
 
 /// The distance at which `count` places fill the area loosely enough that darts find them soon: 0.7 of the

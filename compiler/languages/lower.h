@@ -10,7 +10,7 @@
 
 namespace graftal {
 
-/// What a model is.
+/// The graph of a model, and what lowering noted of it.
 struct LoweredText {
     /// Verified. Nothing after errors, of an orbit, and where LowerOptions::may_draw_nothing applies.
     std::optional<Graph> graph;

@@ -61,7 +61,7 @@ double gradient_noise(glm::dvec2 at, std::uint32_t seed) {
     return std::numbers::sqrt2 * glm::mix(low, high, s.y);
 }
 
-/// Of the octaves of height_of(): how much each weighs, and how much they add at most from each on.
+/// The octaves of height_of(): the weight of each, and the most that those from each on add.
 struct Octaves {
     static constexpr int smooth = 2;      ///< the coarsest ones are noise; the others fold it
     static constexpr double crest = 0.45; ///< where a fold lies
@@ -77,8 +77,8 @@ struct Octaves {
     }
 };
 
-/// How thick the layer is, before a threshold cuts it: towers where the noise folds. Wavelengths that a texel
-/// is too wide for fade out. Something less than `least`, if it is less.
+/// The thickness of the layer, before a threshold cuts it: towers where the noise folds. Wavelengths fade
+/// out that a texel is too wide for. Any number less than `least`, if it is less.
 double height_of(glm::dvec2 at, double texel, double least) {
     static constexpr Octaves of;
     // Bends the rest, so that no lattice shows.

@@ -2,7 +2,7 @@
 
 namespace graftal {
 
-/// How light becomes a picture: both engines give linear light, and one rule develops it
+/// The development of light into a picture: both engines give linear light, and one rule develops it
 /// (runtime/image/develop.h).
 struct Film {
     double exposure = 1;   ///< factor of all light

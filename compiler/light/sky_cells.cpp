@@ -101,7 +101,7 @@ class Cutter {
                             static_cast<std::size_t>(x)];
     }
 
-    /// Of a column or a row of the region.
+    /// The light of a column or a row of the region.
     double line(const Region& region, bool across, int number) const {
         double light = 0;
         if (across)

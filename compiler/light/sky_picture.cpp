@@ -11,7 +11,7 @@ namespace graftal {
 
 namespace {
 
-/// Of cells, at least, unless the picture's texels stand for them: half a degree and less.
+/// Least columns and rows of cells, unless the picture's texels stand for them: half a degree and less.
 constexpr int least_columns = 512, least_rows = 256;
 
 float mean_of(const SkyPicture::Texel& texel) {

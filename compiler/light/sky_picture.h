@@ -55,7 +55,7 @@ class SkyPicture {
     std::unique_ptr<const SkyCells> cells_;
 };
 
-/// Of a file, for a compiler.
+/// The sky picture of a file, for a compiler.
 struct LoadedSkyPicture {
     std::shared_ptr<const SkyPicture> picture;
     int file_width = 0, file_height = 0;
@@ -63,10 +63,10 @@ struct LoadedSkyPicture {
 };
 
 inline constexpr float most_radiance = 1e6f;
-/// Of a picture that is loaded, across and down; larger ones are reduced.
+/// Most texels of a loaded picture, across and down; larger pictures are reduced.
 inline constexpr int most_sky_columns = 4096;
 
-/// Whom a compiler asks for the picture in a file.
+/// The function that a compiler asks for the picture in a file.
 using LoadSkyPicture = std::function<Status(const std::string& path, LoadedSkyPicture& loaded)>;
 
 } // namespace graftal

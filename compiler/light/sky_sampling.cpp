@@ -11,10 +11,10 @@ namespace graftal {
 
 namespace {
 
-/// Of the mean: what rounding makes of an even sky is not bright.
+/// The least excess of light over the mean, as a share of it: rounding of an even sky is not bright.
 constexpr double least_excess = 1e-4;
 
-/// By a number in [0, 1): between -1 and 1, with a density of 1 - |x|.
+/// The number between -1 and 1 that one in [0, 1) chooses, with a density of 1 - |x|.
 double tent(double place) {
     return place < 0.5 ? std::sqrt(2 * place) - 1 : 1 - std::sqrt(2 * (1 - place));
 }

@@ -22,14 +22,14 @@ class SkySampling {
     /// Whether any light is above the mean; else no direction has a density.
     bool any() const { return any_; }
 
-    /// Of two numbers in [0, 1). Requires any().
+    /// The direction that two numbers in [0, 1) choose. Requires any().
     Vec3 direction(glm::dvec2 place) const;
-    /// Of direction(), a steradian. Requires a unit vector.
+    /// The density of direction(), per steradian. Requires a unit vector.
     double density(Vec3 direction) const;
 
   private:
     double row_chance(std::size_t row) const { return row > 0 ? rows_[row] - rows_[row - 1] : rows_[0]; }
-    /// Of the columns as they are rounded: what sampling and its density make of them is the same.
+    /// The chance of a column as it is rounded, so that sampling and its density agree.
     double column_chance(std::size_t row, std::size_t column) const {
         const float* const chances = columns_.data() + row * width_;
         return column > 0 ? chances[column] - chances[column - 1] : chances[0];

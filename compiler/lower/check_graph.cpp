@@ -11,7 +11,7 @@ namespace graftal {
 
 namespace {
 
-/// By object: reaches a plane by instances. Masters come first in the order of components.
+/// A flag for each object: whether it reaches a plane by instances. Masters come first among components.
 std::vector<bool> plane_holders(const Graph& graph, const Components& components) {
     std::vector<bool> holds(graph.objects.size(), false);
     for (const std::vector<ObjectId>& members : components.members) {

@@ -8,7 +8,7 @@
 
 namespace graftal {
 
-/// What an L-system placed of a model with inner parameters.
+/// The members of a model with inner parameters that an L-system placed.
 struct FamilyReport {
     std::string model;                   ///< as `~` names it
     std::vector<std::string> parameters; ///< names of the inner ones
@@ -17,7 +17,7 @@ struct FamilyReport {
     double error = 0;                    ///< largest distance of an argument from the value in its place
 };
 
-/// How an L-system was compiled.
+/// A report of how an L-system was compiled.
 struct Derivation {
     std::string way;               ///< "composed" part by part, or "derived" and then shared
     std::optional<unsigned> steps; ///< nothing: infinite

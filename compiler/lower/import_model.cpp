@@ -263,7 +263,7 @@ std::optional<Primitive> load_mesh(Span name_span, std::string_view path, Loweri
 bool within_limits(std::size_t objects, std::size_t instances, Span span, Lowering& lowering) {
     const std::size_t most_objects = lowering.options.max_objects;
     const std::size_t most_instances = most_objects * max_instances_per_object;
-    // Those that come later need not be made, if these take too much already.
+    // Later objects need not be made, if those made so far take too much already.
     if (work_of_graph(objects, instances) > lowering.meter.left())
         throw OutOfWork("lower", lowering.help.control.work->limit());
     if (objects <= most_objects && instances <= most_instances) return true;

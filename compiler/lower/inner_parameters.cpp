@@ -29,7 +29,7 @@ std::optional<std::size_t> members_of(const SceneField& field, const Environment
     return std::nullopt;
 }
 
-/// What is left out becomes as large as the whole family allows.
+/// Fills in numbers of members that are left out: as large as the whole family allows.
 void fill_in_members(std::vector<InnerParameter>& parameters) {
     std::size_t given = 1, open = 0;
     for (const InnerParameter& parameter : parameters) {

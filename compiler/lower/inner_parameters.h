@@ -21,17 +21,17 @@ struct InnerParameter {
 /// The members of all of a model's parameters together may not be more.
 inline constexpr std::size_t max_family = 256;
 
-/// Those among the statements, in the order of the text; `lets`: their values too, see evaluate_lets(). Where
-/// `members` is left out it is 16, or what the other parameters leave of max_family. Errors: numbers that are
-/// not whole or too small, too large a family.
+/// The inner parameters among the statements, in the order of the text; `lets`: their values too, see
+/// evaluate_lets(). Without `members` one has 16, or what others leave of max_family. Errors: numbers that
+/// are not whole or too small, too large a family.
 std::vector<InnerParameter> inner_parameters(const std::vector<SceneStatement>& statements,
                                              const Environment& lets, Diagnostics& diagnostics);
 
-/// The parameters that a model file takes from those who use it: of the file, then of its main block. What is
-/// wrong with the file is left to those who lower it.
+/// The parameters that a model file takes from its users: of the file, then of its main block. Errors of the
+/// file are left to its lowering.
 std::vector<InnerParameter> inner_parameters_of(FileId file, Lowering& lowering);
 
-/// How many models the values of these parameters are rounded to.
+/// Number of models that the values of these parameters are rounded to.
 std::size_t family_size(std::span<const InnerParameter> parameters);
 
 /// The values of the member that stands for the model with these arguments: i/(N - 1), or the default where
@@ -39,7 +39,7 @@ std::size_t family_size(std::span<const InnerParameter> parameters);
 std::vector<double> nearest_member(std::span<const InnerParameter> parameters,
                                    std::span<const double> arguments);
 
-/// These values by name.
+/// The values of the parameters by name.
 Environment named_values(std::span<const InnerParameter> parameters, const std::vector<double>& values);
 
 /// The first argument for a parameter that lies outside of [0, 1] by more than rounding, as the error "'k' of

@@ -30,7 +30,7 @@ std::optional<FlatArea> lower_area(const std::vector<Expression>& numbers, Span 
     if (values.size() < numbers.size()) return std::nullopt;
     const FlatArea area = area_of(values);
     const Vec2 extent = area.high - area.low;
-    // Of a place far from the origin doubles may not tell the borders apart.
+    // Doubles may not tell the borders of a place far from the origin apart.
     if (!(area.size() > 0) || !(std::min(extent.x, extent.y) > 0)) {
         diagnostics.error(span, "this area is empty");
         return std::nullopt;

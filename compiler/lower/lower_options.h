@@ -24,14 +24,13 @@ class ParsedFiles;
 struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
     std::optional<unsigned> steps; ///< derivation steps of an L-system, in place of what the model says
-    /// The same between steps: L-systems whose drawing reads the time are drawn as old as this, after as many
-    /// steps as are done by then; others after `steps`, or if these are not given, too. Other languages have
-    /// no time: without `steps` it is an error.
+    /// The time to draw at, in steps. L-systems whose drawing reads the time are drawn at this age, after
+    /// the steps done by then. Others take `steps` or, without these, the steps done by then. Other
+    /// languages have no time: without `steps` it is an error.
     std::optional<double> time;
     std::optional<std::uint64_t> seed; ///< of what is random, in used models too
     /// Files that a model names, and the model itself, must lie in this folder, with all symbolic links
-    /// resolved;
-    /// "": they may lie anywhere.
+    /// resolved. Where it is "", they may lie anywhere.
     std::string root;
     bool exact = false; ///< L-systems are derived module by module: one honest random tree
     std::uint64_t max_modules = 50'000'000; ///< of a derived word
@@ -64,7 +63,7 @@ struct LowerHelp {
     ParsedFiles* parsed = nullptr;           ///< of lowerings before; null: each text is parsed anew
 };
 
-/// What lowering learns beside the graph.
+/// Facts that lowering learns beside the graph.
 struct LowerNotes {
     std::optional<Derivation> derivation;         ///< of an L-system
     std::shared_ptr<const OrbitModel> orbit;      ///< or null; what is one has no graph

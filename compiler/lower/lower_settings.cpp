@@ -95,7 +95,7 @@ void read_texture(const SceneField& field, bool take_colour, Lowering& lowering,
             .with_hint("a texture keeps at most 33 million pixels, and all of a model 134 million");
 }
 
-/// How the picture lies.
+/// Reads the texture of a material, and how it lies.
 void lower_texture(const SceneFields& fields, Lowering& lowering, Material& material) {
     if (const SceneField* texture = fields.find("texture"))
         read_texture(*texture, !fields.flag("color"), lowering, material);
@@ -141,7 +141,7 @@ void lower_finish(const SceneFields& fields, Material& material) {
                      "a metal reflects by its colour, and has no 'ior'; leave out one of the two");
 }
 
-/// What a material is except for its own fields. `before`: the materials of the statements above.
+/// The material that the field `from` names. `before`: the materials of the statements above.
 Material base_of(const SceneFields& fields, std::string_view own_name,
                  const std::vector<SceneStatement>& statements, const std::vector<Material>& before,
                  Diagnostics& diagnostics) {

@@ -11,11 +11,11 @@ namespace graftal {
 /// where this is the root model. Errors: duplicates, unknown names (also of `--set`), values that are not
 /// finite, inner parameters outside of [0, 1].
 Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering);
-/// The same on top of `outer` values, which they may use and hide, and without the check that `--set` names
-/// are known. `inner`: values of inner parameters, by name, in place of their own.
+/// Evaluates `let`s on top of `outer` values, which they may use and hide, and does not check that `--set`
+/// names are known. `inner`: values of inner parameters, by name, in place of their own.
 Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer,
                           Lowering& lowering, const Environment& inner = {});
-/// That check: reports names of `--set` that are neither among `known` nor of `settings`.
+/// Reports names of `--set` that are neither among `known` nor of `settings`.
 void check_set_names(const Environment& known, const std::vector<std::string>& settings, Lowering& lowering);
 /// The value that `--set` gives a setting of the root model; a `let` of that name comes first.
 std::optional<double> set_value(std::string_view setting, const Environment& lets, const Lowering& lowering);
@@ -29,7 +29,7 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
 /// after the error "unknown material" with a suggestion.
 const Material* find_material(std::string_view name, Span span, const std::vector<Material>& materials,
                               Diagnostics& diagnostics);
-/// The same in the list, which then has it.
+/// The id of a material in the list, which gets it if need be; nothing after the error of find_material().
 std::optional<MaterialId> material_named(std::string_view name, Span span, std::vector<Material>& materials,
                                          Diagnostics& diagnostics);
 

@@ -49,7 +49,7 @@ bool in_unit_range(const std::array<double, count>& numbers, const std::vector<E
     for (std::size_t i = 0; i < count; ++i) {
         if (numbers[i] >= 0 && numbers[i] <= 1) continue;
         good = false;
-        // Who counts to 255 does so three times.
+        // A colour that counts to 255 does so three times, and is one error.
         if (i < 3 && numbers[i] > 1 && std::exchange(too_bright, true)) continue;
         const char* what = i == 3 ? "alpha" : "a colour component";
         Diagnostic& error = outside_unit_range(what, numbers[i], values[i].span, diagnostics);

@@ -22,7 +22,7 @@ std::optional<Vec3> lower_vector(const std::vector<Expression>& values, const En
 std::optional<Rgb> lower_color(const std::vector<Expression>& values, const Environment& environment,
                                Diagnostics& diagnostics);
 
-/// Of a light: 1 is full white on a white surface that faces it, and there may be more.
+/// The brightest colour of a light: 1 is full white on a white surface that faces it.
 inline constexpr double brightest_light = 1e6;
 std::optional<Rgb> lower_light_color(const std::vector<Expression>& values, const Environment& environment,
                                      Diagnostics& diagnostics);
@@ -45,9 +45,9 @@ std::optional<PrimitiveKind> kind_of_numbers(std::string_view name);
 /// Whether models may not give this name to what they define: it is a primitive's, of the first eight kinds.
 /// A model's own name hides that of a kind with shapes, so that a new kind breaks no model.
 bool is_reserved_name(std::string_view name);
-/// Whether so many numbers may make one of a kind of numbers.
+/// Whether this many numbers may make a primitive of a kind of numbers.
 bool takes_count(PrimitiveKind kind, std::size_t count);
-/// How many that are: "1 argument".
+/// The numbers of arguments that the kind takes: "1 argument".
 std::string counts_taken(PrimitiveKind kind);
 
 /// The map of one line. Errors: singular maps (but not of `projection`, which must only not vanish), zero

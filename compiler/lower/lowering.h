@@ -39,7 +39,7 @@ struct LoadingFile {
     std::size_t failures_before = 0;   ///< Lowering::failures() before it was parsed
 };
 
-/// What a used file has been lowered for.
+/// A used file, with the values that it has been lowered for.
 struct LoweredKey {
     std::string path;
     Environment inner;
@@ -48,7 +48,7 @@ struct LoweredKey {
     auto operator<=>(const LoweredKey&) const = default;
 };
 
-/// What lowering one model shares between its files and front-ends.
+/// State that the files and front-ends of one model share while it is lowered.
 struct Lowering {
     SourceMap& sources;
     Diagnostics& diagnostics;
@@ -95,9 +95,9 @@ std::optional<FileId> read_model(const UseStatement& use, Lowering& lowering);
 /// name begins with `NAME.`.
 std::optional<ObjectId> import_model(Graph& into, const UseStatement& use, Lowering& lowering);
 
-/// The same for one of a family: its inner parameters have these values; its objects are named
-/// `NAME.k1.object`, with another number for each member, and its materials `NAME.material` unless one that
-/// is equal is there already. For `into` that may have objects by any names.
+/// Imports one member of a family: its inner parameters have these values. Its objects are named
+/// `NAME.k1.object`, with another number for each member. Its materials are named `NAME.material`, unless an
+/// equal one is there already. `into` may have objects by any names.
 std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, const Environment& inner,
                                       Lowering& lowering);
 

@@ -15,10 +15,10 @@ namespace graftal {
 namespace {
 
 constexpr double tolerance = 1e-11;
-/// Lists of so few primitives are written out where they are used.
+/// Lists of up to this many primitives are written out where they are used.
 constexpr std::size_t most_written_out = 2;
-/// Of lists whose fingerprints do not tell them apart, as where bodies are tiny beside their distances, no
-/// more are compared.
+/// Most lists that are compared where fingerprints do not tell lists apart, as where bodies are tiny beside
+/// their distances.
 constexpr std::size_t most_looked_at = 256;
 
 /// Fixed numbers in [-1, 1] that have nothing to do with each other.

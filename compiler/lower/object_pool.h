@@ -23,14 +23,14 @@ class ObjectPool {
     /// `graph` must outlive this.
     explicit ObjectPool(Graph& graph);
 
-    /// What stands for the list in the lists of its users: the list itself if it is short, else an instance
-    /// of an object, which is named after `name` where it is new. Requires finite maps.
+    /// The instances that stand for the list in the lists of its users: the list itself if it is short. Else
+    /// it is an instance of an object, which is named after `name` where it is new. Requires finite maps.
     /// `terminal` is drawn in place of the object where it is too small to see. Lists that differ by a
     /// rotation are equal too if each is given in the `frame` that it has in common with the others.
     std::vector<Instance> share(std::vector<Instance> instances, std::optional<Instance> terminal,
                                 std::string_view name, Span span, const Mat3& frame = Mat3(1.0));
 
-    /// About how much memory the objects take.
+    /// About how many bytes of memory the objects take.
     std::size_t bytes() const { return bytes_; }
 
     /// Like `name`, with a number at the end if that name was given before.

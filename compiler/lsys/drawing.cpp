@@ -29,22 +29,22 @@ namespace {
 
 constexpr Vec3 up(0, 1, 0);
 
-// Of random models.
+// Random models: the most drift of their parts, and the numbers of their variants.
 constexpr double most_drift = 0.05;
 constexpr std::uint32_t fewest_variants = 16;
 constexpr std::uint32_t most_variants = 4096;
 
-/// Blocks may carry out so many statements for each module that a word may have.
+/// Most statements that blocks may carry out for each module that a word may have.
 constexpr std::uint64_t instructions_a_module = 2;
 
 /// Models with more parts get by with fewer directions.
 constexpr std::size_t most_exact_parts = 100'000;
-/// And with fewer sizes, if these make them so many: then with a quarter. Of random models, as many for
-/// sixteen variants.
+/// Models with more parts get by with fewer sizes, and with a quarter of this if sizes make the parts so
+/// many. Random models may have as many for each sixteen variants.
 constexpr std::size_t most_sized_parts = 16'384;
 constexpr std::size_t most_resized_parts = 4'096;
 
-/// What is taken for equal when parts are looked up.
+/// Differences that are ignored when parts are looked up.
 struct Rounding {
     bool resizes = false; ///< modules that differ in their size only
     double size_step = 0;
@@ -340,7 +340,7 @@ class Drawer {
         return std::nullopt;
     }
 
-    /// What would be drawn, without adding it to the graph.
+    /// The part that would be drawn, without adding it to the graph.
     std::optional<TurtlePart> sketch(const Graph& graph) {
         Graph scratch = graph;
         ObjectPool pool(scratch);

@@ -21,7 +21,7 @@ struct LsysDrawOptions {
     std::uint64_t seed = 0;
     bool exact = false; ///< derive the word, rather than compose parts; so are contexts anyway
     std::uint64_t max_modules = 50'000'000; ///< of the word
-    /// Of the models that have some, how many parameters come before the scale.
+    /// Number of parameters before the scale, of each model that has inner ones.
     std::map<SymbolId, std::size_t> inner;
     bool has_other_models = false; ///< than primitives of finite size
     std::size_t max_parts = 1'000'000;

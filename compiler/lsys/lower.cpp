@@ -24,7 +24,7 @@ namespace graftal {
 
 namespace {
 
-/// They are composed by recursion.
+/// Recursion composes nested blocks.
 constexpr unsigned max_block_nesting = 256;
 
 constexpr const char* no_steps_hint =
@@ -68,13 +68,13 @@ class LsysLowering {
         bool under_way = false;
     };
 
-    /// What `~NAME` places: one root, or a family.
+    /// A thing that `~NAME` places: one root, or a family.
     struct Model {
         std::optional<ObjectId> root; ///< nothing after an error
         ModelFamily* family = nullptr;
     };
 
-    /// The values that who uses this file gives its inner parameters.
+    /// The values that the user of this file gives its inner parameters.
     const Environment& given_inner() const { return lowering_.loading.back().inner; }
 
     bool failed() const { return lowering_.file_failed(); }
@@ -297,14 +297,14 @@ class LsysLowering {
 
     bool is_timed(const LsysGrammar& grammar) const { return grammar.draws_in_time(); }
 
-    /// What the command line says.
+    /// The steps that the command line asks for.
     std::optional<unsigned> asked_steps(const LsysGrammar& grammar) const {
         const LowerOptions& options = lowering_.options;
         if (!options.time || (options.steps && !is_timed(grammar))) return options.steps;
         return static_cast<unsigned>(*options.time);
     }
 
-    /// Of the step after the last, when the block is drawn.
+    /// The share of the step after the last that has passed when the block is drawn.
     double share_of_step(const Block& block, const LsysGrammar& grammar) {
         const std::optional<double>& time = lowering_.options.time;
         return time && is_root(block) && is_timed(grammar) ? *time - std::floor(*time) : 0;
@@ -376,7 +376,7 @@ class LsysLowering {
         return counts;
     }
 
-    /// Than primitives of finite size.
+    /// Whether some model is not a primitive of finite size.
     bool has_other_models(const std::map<SymbolId, Model>& models) const {
         return std::ranges::any_of(models, [&](const auto& entry) {
             const Model& model = entry.second;
@@ -420,7 +420,7 @@ class LsysLowering {
         return reports;
     }
 
-    /// What is in a run makes an object of its own, unless it is all.
+    /// The root of a block. A run makes an object of its own, unless it is all.
     std::optional<ObjectId> add_root(const LsysBlock& block, LsysDrawing drawing) {
         Object root;
         root.name = pool_.unique_name(block.name.text);

@@ -27,7 +27,7 @@ constexpr std::array<Paint, 8> default_paints = {{
     {"blue", {0.07, 0.18, 0.50}},
 }};
 
-// Of figures that use no colours: light, to stand before a dark background.
+// Colours of figures that use none: light, to stand before a dark background.
 constexpr Paint curve_paint = {"curve", {0.90, 0.62, 0.22}};
 constexpr Paint stalk_paint = {"stalk", {0.50, 0.66, 0.24}};
 

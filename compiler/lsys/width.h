@@ -3,7 +3,7 @@
 #include "compiler/lsys/compile/grammar.h"
 #include "compiler/lsys/turtle/length_tally.h"
 
-// How thick segments are where a block does not say it by `width`.
+// The thickness of segments where a block does not state it by `width`.
 
 namespace graftal {
 
@@ -13,10 +13,10 @@ bool draws_lines(const LsysGrammar& grammar);
 /// Whether the width that the turtle starts with depends on the figure.
 bool has_open_width(const LsysGrammar& grammar);
 
-/// By so much the width is multiplied where a branch begins. Of a plant drawn in lines, twigs are finer than
-/// the trunk. It is taken for a plant if it has branches, and its axiom has none: what is put together
-/// around a point, as tilings are, has lines of one width. So has what has polygons, and segments of several
-/// lengths: each would come in several widths too.
+/// The factor of the width where a branch begins: a plant drawn in lines has finer twigs than its trunk. A
+/// plant has branches, but none in its axiom: a figure put together around a point, as tilings are, has
+/// lines of one width. Figures with polygons or with segments of several lengths keep one width too: each
+/// length would come in several widths.
 double branch_taper(const LsysGrammar& grammar);
 
 /// The width, or the thickness, that the turtle starts with, if it is not open; else one to go on with until

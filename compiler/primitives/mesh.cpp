@@ -30,7 +30,7 @@ std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault) {
     }
     for (Vec3& normal : data->normals) {
         const double largest = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
-        // What is no number, and what has no direction, is as if the file had none there.
+        // A normal that is no number, or has no direction, counts as if the file had none there.
         normal = largest > 0 && std::isfinite(largest) ? normal / largest : Vec3(0.0);
     }
     MeshData kept = without_slivers(*data);

@@ -35,10 +35,10 @@ inline constexpr double most_mesh_coordinate = 1e6;
 /// for.
 std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault);
 
-/// What is at fault with a coordinate, of a vertex or of a picture; empty if nothing is.
+/// The fault of a coordinate, of a vertex or of a picture; empty if there is none.
 std::string fault_of_coordinate(double coordinate);
 
-/// The parts of read_mesh(). What is at fault begins with its line, or in a PLY's elements with its byte.
+/// The parts of read_mesh(). A fault begins with its line, or in a PLY's elements with its byte.
 std::optional<MeshData> read_obj(std::string_view text, std::string& fault);
 std::optional<MeshData> read_ply(std::string_view bytes, std::string& fault);
 

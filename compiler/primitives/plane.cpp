@@ -60,7 +60,7 @@ SurfaceSite site(const Primitive&, Vec3) {
 }
 
 bool intersect(const Primitive&, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
-    // Of a parallel ray not finite, which no range holds.
+    // A parallel ray gives a number that is not finite, and no range holds it.
     const double t = -ray.origin.y / ray.direction.y;
     if (!holds(range, t)) return false;
     hit = {t, {0, 1, 0}};

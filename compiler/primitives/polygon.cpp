@@ -170,7 +170,7 @@ SurfaceSite site(const Primitive& primitive, Vec3 u) {
 }
 
 bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
-    // Of a parallel ray not finite, which no range holds.
+    // A parallel ray gives a number that is not finite, and no range holds it.
     const double t = -ray.origin.z / ray.direction.z;
     if (!holds(range, t)) return false;
     const double x = ray.origin.x + t * ray.direction.x, y = ray.origin.y + t * ray.direction.y;

@@ -24,11 +24,11 @@ struct PolygonRings {
 /// area, or rings cross or touch themselves or each other. O(corners^2).
 std::optional<PolygonRings> polygon_rings(std::span<const PlanePoint> points, std::string& fault);
 
-/// What lies in an odd number of the rings, as triangles over their corners, counter-clockwise. Requires
-/// rings of polygon_rings().
+/// Triangles over the rings' corners that fill the points inside an odd number of rings, counter-clockwise.
+/// Requires rings of polygon_rings().
 std::vector<std::array<std::uint32_t, 3>> triangulate(const PolygonRings& rings);
 
-/// Of a polygon.
+/// The rings of a polygon.
 const PolygonRings& rings_of(const Primitive& polygon);
 
 } // namespace graftal

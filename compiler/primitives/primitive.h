@@ -52,7 +52,7 @@ struct ConvexPart {
     std::size_t ring = 0;
 };
 
-/// How pictures are wrapped round a primitive.
+/// The way in which pictures are wrapped round a primitive.
 struct TextureWrap {
     bool around = false; ///< u goes round the y axis, and as many pictures as the material says
     bool along = false;  ///< v goes along the y axis: as many as keep the proportions
@@ -80,7 +80,7 @@ struct PrimitiveHit {
     std::uint64_t steps = 0; ///< among the parts of the primitive, whether or not any was met
 };
 
-/// How many numbers make a primitive of the kind; `most` is 0 for those of no numbers.
+/// The range of how many numbers make a primitive of the kind; `most` is 0 for kinds without numbers.
 struct PrimitiveArguments {
     std::size_t least = 0, most = 0;
 };
@@ -106,7 +106,7 @@ struct PrimitiveTraits {
     std::vector<HullPiece> (*hull)(const Primitive&);
     /// Convex bodies whose union is the primitive, or casts nearly its shadow.
     std::vector<ConvexPart> (*convex_parts)(const Primitive&);
-    /// Of the largest ball or disc in it, or nearly.
+    /// The radius of the largest ball or disc in it, or nearly.
     double (*inner_radius)(const Primitive&);
 
     /// A point that all maps leave where it is that take the primitive onto itself.
@@ -126,9 +126,9 @@ struct PrimitiveTraits {
     bool solid = false;
 
     TextureWrap wrap;
-    /// Of a point of the surface.
+    /// The texture point of a point of the surface.
     TexturePoint (*texture_point)(const Primitive&, const TextureSpace&, Vec3 point);
-    /// Of three points of one triangle of the mesh, where points alone do not say it; else null.
+    /// The texture points of a triangle of the mesh, where points alone do not say them; else null.
     std::array<TexturePoint, 3> (*texture_triangle)(const Primitive&, const std::array<Vec3, 3>&) = nullptr;
 
     double (*area)(const Primitive&);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the meshes of round primitives share.
+// Functions that the meshes of round primitives share.
 
 #include <cstdint>
 
@@ -11,7 +11,7 @@ namespace graftal {
 /// A regular n-gon whose corners are this far out strays from the unit circle by the same length at its
 /// corners (outside) and at the middles of its sides (inside).
 double balanced_radius(int sides);
-/// That length.
+/// The length by which the n-gon of balanced_radius() strays from the unit circle.
 double balanced_error(int sides);
 
 /// The unit direction i/n of a turn about the y axis, running from +z to +x: counter-clockwise seen from

@@ -1,6 +1,6 @@
 #pragma once
 
-// What primitives with shapes share.
+// Parts that primitives with shapes share.
 
 #include <array>
 #include <span>

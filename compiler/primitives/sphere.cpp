@@ -70,7 +70,7 @@ TessellatedPrimitive subdivided_octahedron(int fineness) {
     return mesh;
 }
 
-/// How near the flat sides of a mesh inscribed in the unit sphere come to its centre.
+/// The least distance of a flat side of a mesh inscribed in the unit sphere from its centre.
 double inner_radius_of(const TessellatedPrimitive& mesh) {
     double least = 1;
     for (const auto& [a, b, c] : mesh.triangles) {
@@ -89,8 +89,8 @@ double surface_of(const TessellatedPrimitive& mesh) {
     return sum;
 }
 
-/// How far out the corners of the mesh lie: such that its shadows are as large as the sphere's, over all
-/// directions on average. That of a convex body is a quarter of its surface (Cauchy).
+/// The radius of the mesh's corners that makes its shadows as large as the sphere's, over all directions on
+/// average. The mean shadow of a convex body is a quarter of its surface (Cauchy).
 double corner_radius(const TessellatedPrimitive& inscribed) {
     return std::sqrt(4 * pi / surface_of(inscribed));
 }

@@ -97,7 +97,7 @@ Box box(const Primitive&) {
     return {Vec3(-1.0), Vec3(1.0)};
 }
 
-/// How long a vector of (a, b) with |(a, b)|_p = 1 can be where a counts `stretch` times.
+/// The greatest length of (a, b) with |(a, b)|_p = 1 where a counts `stretch` times.
 double longest(double stretch, double p) {
     if (p <= 2) return std::max(stretch, 1.0);
     const double t = p / (p - 2); // dual to p / 2, for the squares
@@ -125,7 +125,7 @@ double power(double x, double exponent) {
     return std::abs(x) < nothing ? 0 : std::copysign(std::pow(std::abs(x), exponent), x);
 }
 
-/// By longitude and latitude, which gather where the surface bends. Corners lie on the surface.
+/// A mesh by longitude and latitude, which gather where the surface bends. Corners lie on the surface.
 TessellatedPrimitive mesh(const Primitive& primitive, int fineness) {
     const Superellipsoid& form = form_of(primitive);
     TessellatedPrimitive mesh;
@@ -159,7 +159,7 @@ TessellatedPrimitive mesh(const Primitive& primitive, int fineness) {
     return mesh;
 }
 
-/// How far points of the mesh's triangles lie from where their rays from the middle leave the body.
+/// The greatest distance of a point of a triangle from where its ray from the middle leaves the body.
 double mesh_error(const Primitive& primitive, int fineness) {
     constexpr int grid = 4;
     const Norm& norm = form_of(primitive).norm;

@@ -28,7 +28,7 @@ SurfaceSite tapered_site(const Primitive& primitive, Vec3 choice);
 inline constexpr int finest_tapered_mesh = 8;
 inline constexpr TextureWrap tapered_wrap{.around = true, .along = true};
 
-/// How many sides a prism or pyramid of this fineness has.
+/// Number of sides of a prism or pyramid of this fineness.
 int prism_sides(int fineness);
 /// The mesh of what has two caps, and normals.
 TessellatedPrimitive tapered_mesh(int fineness, double top);
@@ -38,7 +38,7 @@ void add_cap(TessellatedPrimitive& mesh, int n, double radius, double y, bool fa
 
 /// A site of a disc about the y axis.
 SurfaceSite disc_site(Vec3 choice, double radius, double y);
-/// How far up the side the share `u` of its area lies, however the axis stretches it.
+/// The height below which the side has the share `u` of its area, however the axis stretches it.
 double height_on_side(double u, double top);
 
 /// Zero on the cone x^2 + z^2 = y^2.

@@ -7,7 +7,7 @@ namespace graftal {
 
 namespace {
 
-/// What meshes of all finenesses have, once each.
+/// Values of the meshes of all finenesses, each made once.
 template<typename Value> class FinenessCache {
   public:
     template<typename Make>

@@ -20,10 +20,10 @@ double length_in_turns(const Mat3& parent_from_primitive);
 /// whole ones fit, so that they go on from one piece of a branch to the next.
 TextureSpace texture_space(const Primitive& primitive, double around, double turns);
 
-/// Of a point of the primitive's surface, in its own frame.
+/// The texture point of a point of the primitive's surface, in its own frame.
 TexturePoint texture_coordinates(const Primitive& primitive, const TextureSpace& space, Vec3 point);
 
-/// Of three such points that are near each other, on one side of the seams.
+/// The texture points of three points of the surface near each other, on one side of the seams.
 std::array<TexturePoint, 3> texture_coordinates(const Primitive& primitive, const TextureSpace& space,
                                                 const std::array<Vec3, 3>& points);
 

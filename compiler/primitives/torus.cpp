@@ -145,8 +145,8 @@ SurfaceSite site(const Primitive&, Vec3 u) {
 // The extrema need no great care: an error of e in one changes the quartic there by e^2 only, so that half of
 // the digits do.
 
-/// What rounding leaves of the quartic at a root. Twice a point's distance from the surface is about its
-/// value.
+/// The rounding error of the quartic at a root. The quartic's value is about twice a point's distance from
+/// the surface.
 constexpr double noise = 4e-16;
 
 /// s^4 + a s^2 + b s + c.

@@ -32,7 +32,7 @@ bool has_area(const Triangle& t) {
     return glm::length(area_normal(t)) > least_height * longest * longest;
 }
 
-/// The same triangle, turned about so that its least corner is the first.
+/// The triangle turned about so that its least corner is the first.
 Triangle from_least_corner(Triangle t) {
     const auto less = [](Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
     std::ranges::rotate(t, std::ranges::min_element(t, less));
@@ -52,7 +52,7 @@ const TriangleMesh& form_of(const Primitive& primitive) {
     return shape_of<TriangleMesh>(primitive);
 }
 
-/// How much each corner counts at a point of the triangle's plane (barycentric coordinates).
+/// The weights of the corners at a point of the triangle's plane (barycentric coordinates).
 std::array<double, 3> shares_of(const Triangle& t, Vec3 point) {
     const Vec3 normal = area_normal(t);
     const double whole = glm::dot(normal, normal);

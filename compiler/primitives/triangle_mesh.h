@@ -1,7 +1,7 @@
 #pragma once
 
-// What primitives share that are many triangles: the mesh of a file, and surfaces that become a mesh when
-// they are made.
+// Parts shared by primitives that are many triangles: the mesh of a file, and surfaces that become a mesh
+// when they are made.
 
 #include <array>
 #include <string>

@@ -69,7 +69,7 @@ class TriangleRay {
     static constexpr double seam = 1e-12;
 
   private:
-    /// The same, for a coordinate that has gone through some operations.
+    /// The rounding error of a coordinate after some operations, as a share of the largest.
     static constexpr double rounding = 8 * 0x1p-52;
 
     Vec3 origin_;

@@ -34,7 +34,7 @@ double distance2(const Box& box, Vec3 point) {
     return glm::dot(out, out);
 }
 
-/// How far the box reaches along the direction.
+/// The farthest coordinate of the box along the direction.
 double reach(const Box& box, Vec3 direction) {
     double sum = 0;
     for (int i = 0; i < 3; ++i)

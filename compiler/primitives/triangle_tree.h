@@ -43,7 +43,7 @@ class TriangleTree {
     static constexpr double one_depth = 1e-10;
 
   private:
-    /// What is no farther along a unit vector than between two places.
+    /// The points between two places along a unit vector.
     struct Slab {
         Vec3 across;
         double least = 0, most = 0;
@@ -55,7 +55,7 @@ class TriangleTree {
         std::uint32_t slabs = no_slabs; ///< the first of two
     };
     static constexpr std::uint32_t no_slabs = UINT32_MAX;
-    /// How corners are spread, of a number of triangles.
+    /// The spread of the corners of a number of triangles.
     struct Spread;
 
     Spread split(std::uint32_t node, std::uint32_t first, std::uint32_t end);

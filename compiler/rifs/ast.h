@@ -20,7 +20,7 @@ namespace graftal {
 
 /// More maps than this in one file are refused while parsing.
 inline constexpr std::size_t max_rifs_maps = 100'000;
-/// The same for the edges and matrix entries of one `follow`.
+/// More edges and matrix entries than this of one `follow` are refused likewise.
 inline constexpr std::size_t max_rifs_edges = 4'000'000;
 
 /// `condense` and `terminal`: a primitive or used model, placed.
@@ -34,7 +34,7 @@ struct RifsPart {
     Span span;                             ///< from the keyword on
 };
 
-/// How a map's numbers are written: a transform list, or one of the rows of `codes`.
+/// The form of a map's numbers: a transform list, or one of the rows of `codes`.
 enum class RifsForm : std::uint8_t { transforms, codes_2d, codes_polar, codes_3d };
 
 struct RifsMap {

@@ -251,7 +251,7 @@ class DigraphResolver {
     std::size_t instances_ = 0;
 };
 
-/// By node, the nodes that have it as a master: the masters' lists turned round, in one array.
+/// The nodes that have each node as a master: the masters' lists turned round, in one array.
 struct Users {
     std::vector<std::size_t> first;
     std::vector<std::uint32_t> users;

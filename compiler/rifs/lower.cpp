@@ -234,7 +234,7 @@ class RifsLowering {
         add_root(ids);
     }
 
-    /// By block, by condensation set: the probabilities as far as they are stated.
+    /// The probabilities of the condensation sets, block by block, as far as they are stated.
     std::vector<std::vector<std::optional<double>>> condensation_shares() const {
         std::vector<std::vector<std::optional<double>>> shares;
         for (const RifsBlock& block : tree_.blocks) {

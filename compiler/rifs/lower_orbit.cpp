@@ -194,7 +194,7 @@ class OrbitLowering {
                                fmt::format("the probabilities of 'orbit {}' are all 0", block_.name.text));
     }
 
-    /// What the background is chosen by.
+    /// Adds an object of the maps' colours, by which the background is chosen.
     void add_colours() {
         const ObjectId sphere = model_.scene.primitive(PrimitiveKind::sphere);
         Object root;
@@ -240,7 +240,7 @@ bool may_stand_there(const RifsFile& tree, Lowering& lowering) {
 static_assert(std::is_nothrow_move_constructible_v<OrbitFormulas>);
 
 void lower_orbit_file(const RifsFile& tree, Lowering& lowering) {
-    // What is used fails by an error of its own, whatever went wrong before.
+    // A used model fails by an error of its own, whatever went wrong before.
     if (lowering.at_root_model() && lowering.diagnostics.has_errors()) return;
     if (!may_stand_there(tree, lowering)) return;
     OrbitModel model = OrbitLowering(tree, tree.orbits.front(), lowering).lower();

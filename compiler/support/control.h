@@ -15,7 +15,8 @@ class CancelFlag {
   public:
     CancelFlag() = default;
     /// `asked` is called often, by many threads at once. `wake_descriptor`: a file descriptor that becomes
-    /// readable when the flag is raised, for who waits for a child process; -1: that one asks now and then.
+    /// readable when the flag is raised, for callers that wait for a child process; -1: they ask now and
+    /// then.
     explicit CancelFlag(std::function<bool()> asked, int wake_descriptor = -1)
         : asked_(std::move(asked)), wake_descriptor_(wake_descriptor) {}
 
@@ -27,14 +28,14 @@ class CancelFlag {
     int wake_descriptor_ = -1;
 };
 
-/// How far a long stage is.
+/// The progress of a long stage.
 struct Progress {
     std::string_view stage;  ///< as `--time` names it
     std::uint64_t done = 0;  ///< in units of the stage's own
     std::uint64_t total = 0; ///< 0: nobody knows
 };
 
-/// How a caller ends a long stage early, and hears of it.
+/// The hooks by which a caller ends a long stage early, and hears of it.
 struct Control {
     CancelFlag cancel;
     std::function<void(const Progress&)> on_progress; ///< by the thread that runs the stage

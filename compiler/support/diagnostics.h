@@ -74,7 +74,7 @@ std::string closest_name(std::string_view name, const std::vector<std::string>& 
 /// The hint "did you mean 'x'?" for closest_name, or "" if there is none.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
 
-/// The same, followed by all candidates where they are few.
+/// The hint of did_you_mean(), followed by all candidates where they are few.
 std::string choices(std::string_view name, const std::vector<std::string>& candidates);
 
 } // namespace graftal

@@ -86,7 +86,7 @@ bool is_special_file(const std::string& path) {
 
 bool lies_in(const std::string& path, const std::string& folder) {
     std::error_code error, folder_error;
-    // Of what is not there, as far as it is: a link without a target leads nowhere, and is refused.
+    // A path need not exist to its end, but a link without a target leads nowhere, and is refused.
     const std::filesystem::path inner = std::filesystem::weakly_canonical(path, error);
     const std::filesystem::path outer = std::filesystem::canonical(folder, folder_error);
     if (error || folder_error || std::filesystem::is_symlink(inner, error)) return false;
@@ -175,7 +175,7 @@ Status PendingFile::commit() {
     return {};
 }
 
-/// As commit(), but what was there stays under the temporary's name, where the file system knows how.
+/// Commits, but keeps the old file under the temporary's name, where the file system knows how.
 Status PendingFile::take_place() {
     if (Status status = check_written(); !status.ok()) return status;
     exchanged_ = !is_special_file(target_) &&

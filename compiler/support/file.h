@@ -69,7 +69,7 @@ void remove_pending_files() noexcept;
 /// another has it, or nothing can be locked there.
 int lock_path(const std::string& path);
 
-/// What tells whether a file was written since: where there is none, zeros.
+/// The stamp that tells whether a file was written since; zeros where there is no file.
 struct FileStamp {
     std::int64_t time = 0;
     std::uint64_t bytes = 0;

@@ -29,7 +29,7 @@ class IdTable {
         }
     }
 
-    /// The same without adding: `none` if there is none.
+    /// The number of the thing of this hash for which `same(number)` holds; `none` if there is none.
     template<typename Same> std::uint32_t find(std::uint64_t hash, const Same& same) const {
         if (slots_.empty()) return none;
         const auto mark = static_cast<std::uint32_t>(hash >> 32);

@@ -17,8 +17,7 @@ void make_columns_orthogonal(Mat3& a, Mat3* turn) {
             const double beta = glm::dot(a[q], a[q]);
             const double gamma = glm::dot(a[p], a[q]);
             if (std::abs(gamma) <= 1e-16 * std::sqrt(alpha * beta) || gamma == 0) continue;
-            // What a singular map leaves of a column is rounding noise, and never comes to be at right
-            // angles.
+            // A column that a singular map leaves as rounding noise never comes to be at right angles.
             if (sweep >= enough_sweeps && std::min(alpha, beta) < 1e-30 * std::max(alpha, beta)) continue;
             rotated = true;
             const double zeta = (beta - alpha) / (2 * gamma);

@@ -39,8 +39,8 @@ bool append_plain(std::string& out, double value, int digits) {
     return true;
 }
 
-/// Of a number text that is out of range: true if it is too small for a double, false if too large. Tells by
-/// the decimal place of the first digit that is not 0.
+/// Whether a number text that is out of range is too small for a double; else it is too large. Tells by the
+/// decimal place of the first digit that is not 0.
 bool underflows(std::string_view text) {
     const std::size_t e = std::min(text.find_first_of("eE"), text.size());
     const std::string_view mantissa = text.substr(0, e);

@@ -19,7 +19,7 @@ inline constexpr double largest_size = 1e100;
 inline constexpr const char* range_hint =
     "the sizes and coordinates of a model lie between 1e-100 and 1e+100, and --zoom looks closer than that";
 
-/// Of a size that is not nothing.
+/// Whether a size other than 0 is in the range.
 inline bool is_size(double size) {
     return std::abs(size) >= least_size && std::abs(size) <= largest_size;
 }
@@ -33,7 +33,7 @@ inline bool is_direction(Vec3 direction) {
     return is_size(largest_entry(direction));
 }
 
-/// What is smaller than the least, but not nothing, is made the least: it is drawn as thin as can be.
+/// The size, or the least size if it is smaller but not 0: it is drawn as thin as can be.
 inline double at_least_size(double size) {
     return size == 0 || std::abs(size) >= least_size ? size : std::copysign(least_size, size);
 }
@@ -42,8 +42,8 @@ inline double at_least_size(double size) {
 /// nothing is. A factor of ten is left for what is turned, or composed of numbers at the ends of the range.
 std::string range_fault(const Affine& map);
 
-/// The same of how far something reaches from the origin, and of its size: "reaches farther than 1e+100 units
-/// from the origin", or "is smaller than 1e-100 units". A point is no fault.
+/// The fault of a thing's reach from the origin, or of its size: "reaches farther than 1e+100 units from the
+/// origin", or "is smaller than 1e-100 units"; "" if there is none. A point is no fault.
 std::string range_fault(Vec3 low, Vec3 high);
 
 } // namespace graftal

@@ -33,7 +33,7 @@ std::string masked(std::string_view text);
 /// `longest` bytes the middle is left out.
 std::string escaped(std::string_view text, std::size_t longest = 400);
 
-/// The same of a text of several lines, each as long as it is.
+/// The text with its lines escaped one by one, each at its full length.
 std::string escaped_lines(std::string_view text);
 
 } // namespace graftal

@@ -6,8 +6,8 @@
 
 namespace graftal {
 
-/// What there is to be tidied up, for handlers of signals: those may look at any moment, so that nothing here
-/// locks or takes memory. There are so many places; what finds none, handlers do not see.
+/// Things to tidy up, for handlers of signals: those may look at any moment, so that nothing here locks or
+/// takes memory. The number of places is fixed; handlers do not see a thing that finds none.
 template<typename T, std::size_t places> class SignalRegistry {
   public:
     /// Any thread may call this. Requires that the item lives until it is forgotten.

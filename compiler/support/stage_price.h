@@ -4,8 +4,8 @@
 
 namespace graftal {
 
-/// What a unit of counted work costs, in seconds of one processor of 2024. Work before a picture is counted
-/// by these, not timed, so that a model is refused on all machines or on none.
+/// The prices of units of counted work, in seconds of one processor of 2024. Work before a picture is
+/// counted by these, not timed, so that a model is refused on all machines or on none.
 struct StagePrice {
     // Lowering
     static constexpr double word = 1e-7;          ///< of a text, each time that it is read to make an object
@@ -29,7 +29,7 @@ struct StagePrice {
     static constexpr double body = 5e-7; ///< drawn into a shadow, to find what stands for an object
 };
 
-/// Of the checks and passes of a graph.
+/// Work of the checks and passes of a graph.
 constexpr double work_of_graph(std::size_t objects, std::size_t instances) {
     return StagePrice::object * static_cast<double>(objects) +
            StagePrice::instance * static_cast<double>(instances);

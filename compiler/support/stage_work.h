@@ -18,12 +18,12 @@ class StageWork {
 
     /// Throws OutOfWork where that goes beyond the limit.
     void add(std::string_view stage, double seconds);
-    /// The same without a limit: of a stage that is done.
+    /// Adds the work of a stage that is done, without a limit.
     void settle(double seconds) { seconds_ += seconds; }
 
     double limit() const { return limit_; }
     double seconds() const { return seconds_; }
-    /// For who can do with less: without what is kept.
+    /// Seconds left without those that are kept, for stages that can do with less.
     double left() const { return limit_ > kept_ + seconds_ ? limit_ - kept_ - seconds_ : 0; }
 
   private:

@@ -5,8 +5,8 @@
 
 namespace graftal {
 
-/// How a step that depends on the environment (files, child processes) ended. An empty message is success;
-/// else it says what was tried and what the system answered. Such failures exit with status 3.
+/// The outcome of a step that depends on the environment (files, child processes). An empty message is
+/// success; else it says what was tried and what the system answered. Such failures exit with status 3.
 class [[nodiscard]] Status {
   public:
     Status() = default;

@@ -9,7 +9,7 @@ namespace graftal {
 
 namespace {
 
-/// What singular values are the roots of, or products of roots.
+/// Symmetric functions of the singular values of a map.
 struct Symmetric {
     Mat3 cofactors;
     double squares = 0;      ///< of the three, added
@@ -71,7 +71,7 @@ double flatness_over(double share, const Mat3& linear) {
         const double least = (std::abs(all.volume) - all.rounding) / unit;
         if (least > share) return least;
         if (3 * (std::abs(all.volume) + all.rounding) <= 0.99 * share * unit) return 0;
-        // Of a line the volume says nothing; the least one is no more than the middle one.
+        // The volume of a line says nothing; the least value is no more than the middle one.
         const double middle = 3 * std::sqrt(all.squared_area) + 2e-15 * all.squares;
         if (middle <= 0.99 * share * all.squares) return 0;
     }

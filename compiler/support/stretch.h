@@ -8,7 +8,7 @@
 
 #include "compiler/support/affine.h"
 
-// How maps stretch, without a decomposition.
+// Stretches of maps, without a decomposition.
 
 namespace graftal {
 
@@ -24,7 +24,7 @@ inline double largest_stretch(const Mat3& map) {
         const double difference = std::sqrt((a.x - b.y) * (a.x - b.y) + (a.y + b.x) * (a.y + b.x));
         return std::max(0.5 * (sum + difference), std::abs(c.z));
     }
-    // Of the matrix less its mean eigenvalue, in units of that.
+    // Entries of the matrix less its mean eigenvalue, in units of that.
     const double x = aa / mean - 1, y = bb / mean - 1, z = cc / mean - 1;
     const double xy = glm::dot(a, b) / mean, yz = glm::dot(b, c) / mean, zx = glm::dot(c, a) / mean;
     const double p2 = (x * x + y * y + z * z + 2 * (xy * xy + yz * yz + zx * zx)) / 6;

@@ -5,7 +5,7 @@
 
 namespace graftal {
 
-/// How bytes without a byte order mark are read where they are no UTF-8.
+/// The reading of bytes without a byte order mark where they are no UTF-8.
 enum class OtherBytes : std::uint8_t { kept, windows_1252 };
 
 /// The text of a file as UTF-8 whose lines end with '\n'. A byte order mark chooses UTF-8 or UTF-16, and is

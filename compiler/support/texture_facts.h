@@ -4,7 +4,7 @@
 
 namespace graftal {
 
-/// What a compiler wants to know of a picture that a material names.
+/// Facts of a picture that a material names, for a compiler.
 struct TextureFacts {
     Rgb mean{0.0};       ///< of its linear colours, where it is not clear
     double coverage = 1; ///< the share of it that is not clear

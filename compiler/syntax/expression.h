@@ -26,7 +26,7 @@ struct Expression {
     double number = 0;
     std::string text;                 ///< the name, function, operator or array
     std::vector<Expression> operands; ///< of a call, unary or binary; the indices of an element
-    /// Of a call of a table: its values at even distances of [0, 1], straight between them; at least two.
+    /// The table of a call: values at even distances of [0, 1], straight between them; at least two.
     std::shared_ptr<const std::vector<double>> table;
     Span span;
 };

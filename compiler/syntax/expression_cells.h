@@ -24,7 +24,7 @@ struct CellPlace {
 /// Named cells: the variables of a model.
 using CellPlaces = std::map<std::string, CellPlace, std::less<>>;
 
-/// What an expression sees of them.
+/// The cells that an expression sees.
 struct ExpressionCells {
     const CellPlaces* places = nullptr; ///< null: there are none
     std::span<const double> values;

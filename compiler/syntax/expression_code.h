@@ -45,7 +45,7 @@ class ExpressionCode {
   private:
     enum class Kind : std::uint8_t { number, slot, cell, element, call, negate, invert, binary };
 
-    /// What value() reads.
+    /// The numbers that value() reads.
     struct Row {
         std::span<const double> slots;
         std::span<const double> cells;

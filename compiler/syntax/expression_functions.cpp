@@ -75,7 +75,7 @@ constexpr std::array functions = {
     ExpressionFunction{"logistic", 4, [](Arguments a) { return logistic(a[0], a[1], a[2], a[3]); }},
 };
 
-/// Of the normal distribution beyond this many deviations nothing is left: about 0.27 % are moved inside.
+/// The deviations at which the normal distribution is cut off: about 0.27 % are moved inside.
 constexpr double most_deviations = 3;
 
 double normal_quantile(double uniform, double mean, double deviation) {

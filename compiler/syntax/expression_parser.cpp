@@ -21,8 +21,8 @@ struct Mode {
 
 constexpr const char* vector_hint = "write a vector as x, y, z or <x, y, z>";
 
-/// How tightly a binary operator binds; 0 for other tokens. The power binds tighter than signs and is
-/// parsed apart.
+/// The precedence of a binary operator; 0 for other tokens. The power binds tighter than signs and is parsed
+/// apart.
 int precedence(std::string_view op) {
     if (op == "||") return 1;
     if (op == "&&") return 2;
@@ -57,7 +57,7 @@ class ExpressionParser {
     }
 
   private:
-    /// Of the next token, in this mode; 0 if it does not go on with the expression.
+    /// The precedence of the next token, in this mode; 0 if it does not go on with the expression.
     int binary_level() const {
         const Token& op = stream_.peek();
         if (op.kind != TokenKind::symbol) return 0;

@@ -16,8 +16,8 @@ inline constexpr std::size_t max_expression_size = 1000;
 /// Parses one expression, or reports why not and gives nothing; what was taken stays taken.
 std::optional<Expression> parse_expression(TokenStream& stream);
 
-/// The same in a row of numbers without commas: a sign with white space before it and none after it begins
-/// the next number (`1 -2` is two numbers, `1 - 2` and `1-2` are one), and so does a '<'.
+/// Parses an expression in a row of numbers without commas. A sign with white space before it and none after
+/// it begins the next number, and so does a '<': `1 -2` is two numbers, `1 - 2` and `1-2` are one.
 std::optional<Expression> parse_row_expression(TokenStream& stream);
 
 /// Parses `min` to `max` expressions, as `a, b, c` or `<a, b, c>`, or as a row: `a b c`, `<a b c>`. In a row

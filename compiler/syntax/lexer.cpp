@@ -46,7 +46,7 @@ std::size_t hex_colour_size(std::string_view text) {
     return end < text.size() && is_letter(text[end]) ? 0 : end;
 }
 
-/// Of such a text, in linear light.
+/// The colour of a text that hex_colour_size() accepts, in linear light.
 std::array<double, 3> hex_colour(std::string_view text) {
     const Rgb encoded = srgb_from_hex(text.substr(1, text.size() == 4 ? 3 : 6)).value_or(Rgb(0.0));
     std::array<double, 3> rgb{};

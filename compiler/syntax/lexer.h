@@ -32,7 +32,7 @@ struct Token {
 /// goes on after them. O(text).
 std::vector<Token> lex(const SourceMap& sources, FileId file, Diagnostics& diagnostics);
 
-/// The same for a part of a file, with spans in the file, as if nothing stood around it.
+/// Splits a part of a file into tokens, with spans in the file, as if nothing stood around it.
 std::vector<Token> lex_range(const SourceMap& sources, Span range, Diagnostics& diagnostics);
 
 } // namespace graftal

@@ -6,9 +6,8 @@
 
 namespace graftal {
 
-/// What a character beyond ASCII was most likely meant as: word processors and web pages put typographic
-/// quotes, dashes, arrows, full-width letters and spaces of many kinds in place of what the languages are
-/// written with.
+/// The likely meaning of a character beyond ASCII. Word processors and web pages put typographic quotes,
+/// dashes, arrows, full-width letters and spaces of many kinds in place of the characters of the languages.
 struct Lookalike {
     std::string_view meant; ///< `"`, `-`, `->`, `{`, `3`, a blank, ...; static storage
     std::string_view name;  ///< "a typographic quote"; static storage

@@ -12,7 +12,7 @@ namespace graftal::cfdg {
 
 namespace {
 
-/// What a size of 0 becomes.
+/// The size in place of 0.
 constexpr const char* thinnest = "0.0001";
 
 std::string sum_of(const std::string& a, const std::string& b) {

@@ -11,7 +11,7 @@ namespace {
 
 /// Logarithms of sizes that differ by less are those of equal sizes.
 constexpr double same_size = 1e-6;
-/// The same where shapes are translucent: more would need heights that engines round.
+/// Equal sizes of translucent shapes, by logarithms: finer ones would need heights that engines round.
 constexpr double same_size_of_veils = 1e-3;
 /// The share of the picture's size by which sizes of a ratio of e lie apart.
 constexpr double flatness = 1e-3;
@@ -19,7 +19,7 @@ constexpr double flatness = 1e-3;
 constexpr double least_gap_of_veils = 1e-5;
 /// Lines of an object, and of all levels, that heights tell apart.
 constexpr double most_width = 1e7, most_lines = 1e8;
-/// Depths lie so much farther apart than all other heights.
+/// The factor by which depths lie farther apart than all other heights.
 constexpr double depth_factor = 1000;
 
 bool is_equal(const PaintedLine& line) {
@@ -79,7 +79,7 @@ PaintOrder::PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std
     const double lines = level * levels;
     const double gap = translucent ? least_gap_of_veils * extent : flatness * extent * same_size / lines;
     const double size = translucent ? gap * lines / same_size_of_veils : flatness * extent;
-    // Of each object, how high and how deep it reaches without depths, and then with them.
+    // The height and depth that each object reaches, without depths first, and then with them.
     std::vector<std::pair<double, double>> reach(objects.size());
     const auto find_reach = [&](double depth) {
         for (const std::size_t object : order) {

@@ -30,11 +30,11 @@ class PaintOrder {
     double height(std::size_t object, std::size_t line) const { return heights_[object][line]; }
     /// The least height of one line over another.
     double gap() const { return gap_; }
-    /// Of what lies highest over the root.
+    /// The height of the highest line over the root.
     double top() const { return top_; }
 
   private:
-    /// What an object draws, in units of the least distance.
+    /// The extent of an object's drawing, in units of the least distance.
     struct Spread {
         double width = 0;  ///< lines of one size and one generation
         double levels = 0; ///< generations of one size

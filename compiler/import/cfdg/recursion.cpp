@@ -70,7 +70,7 @@ std::optional<std::size_t> Recursion::index(const std::string& name) const {
     return grammar_.shape(name, "");
 }
 
-/// Of the largest of its copies.
+/// The growth of the largest copy of a transform.
 double Recursion::growth_of_transform(const Element& element) const {
     double growth = -unknown;
     for (const Expr& change : element.arguments)

@@ -9,7 +9,7 @@
 
 namespace graftal::cfdg {
 
-/// How the shapes of a grammar call each other.
+/// The calls between the shapes of a grammar.
 class Recursion {
   public:
     Recursion(const Grammar& grammar, const Expressions& expressions);

@@ -125,7 +125,7 @@ void SceneWriter::read_symmetry(const Definition& definition) {
     reader.end();
 }
 
-/// What reaches over the edges of the tile comes in again on the other side.
+/// Adds neighbouring tiles: shapes that reach over an edge of the tile come in again on the other side.
 void SceneWriter::add_tiles() {
     const std::vector<Affine> one = copies_;
     const int columns = lattice_.across == Vec3(0.0) ? 0 : neighbours,

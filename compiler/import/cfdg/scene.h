@@ -17,10 +17,10 @@
 
 namespace graftal::cfdg {
 
-/// How far the smallest shapes lie in front of the largest: what a shape of scale s draws lies at lift * (1 -
-/// s).
+/// The distance by which the smallest shapes lie in front of the largest. A shape of scale s draws at lift *
+/// (1 - s).
 inline constexpr double lift = 0.02;
-/// What all translations of a grammar share: its text, the scene, and the primitives.
+/// State that all translations of a grammar share: its text, the scene, and the primitives.
 class SceneWriter {
   protected:
     /// Both must outlive this.

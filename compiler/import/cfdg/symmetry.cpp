@@ -45,7 +45,7 @@ std::vector<Affine> dihedral(int order, Vec3 centre, bool mirrors, double axis_d
     return maps;
 }
 
-/// What a tile is: rows of the table of groups ask for it.
+/// The properties of a tile that rows of the table of groups ask for.
 struct Tile {
     bool rectangular = false, square = false, rhombic = false, hexagonal = false, diagonal = false;
     double side = 0; ///< of a square on its corner

@@ -11,7 +11,7 @@
 
 namespace graftal::cfdg {
 
-/// What a tile repeats by: columns of `linear`; one of them is 0 in a frieze, both without a tile.
+/// The steps by which a tile repeats, columns of `linear`; one is 0 in a frieze, both are 0 without a tile.
 struct Lattice {
     Vec3 across{0.0}, up{0.0};
 

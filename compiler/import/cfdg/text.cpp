@@ -18,7 +18,7 @@ std::string tidy(double value) {
     return shortest(std::abs(few - value) <= 1e-15 * std::abs(value) ? few : value);
 }
 
-/// What steps of saturation, brightness or alpha do together: a share of the way to a goal.
+/// The sum of steps of saturation, brightness or alpha: a share of the way to a goal.
 struct Way {
     double goal = 0, share = 0;
 

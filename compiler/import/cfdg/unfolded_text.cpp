@@ -14,7 +14,7 @@ namespace graftal::cfdg {
 namespace {
 
 constexpr std::size_t longest_unfolding = 48'000'000;
-/// What an object holds the only instance of is written within it while its colour takes no more steps.
+/// Most colour steps of a recursive instance that is written within the only object that holds it.
 constexpr std::size_t most_steps_held = 64;
 
 } // namespace

@@ -20,14 +20,14 @@ namespace graftal::cfdg {
 namespace {
 
 constexpr const char* fewer_shapes = "ask for less: fewer turns of its loops, such as a coarser grid";
-/// As many variants of a random shape as .inst makes of a random object.
+/// Most variants of a random shape: as many as .inst makes of a random object.
 constexpr std::size_t most_variants = 64;
 constexpr std::uint64_t most_trials = 20; ///< where chance draws nothing
 constexpr int most_generations = 2000;
 constexpr std::size_t most_nodes = 60'000;
 constexpr std::size_t most_unfolded_lines = 600'000;
 constexpr std::size_t most_loop_turns = 2'000'000;
-/// Of all shapes together: each turn of a loop may add one to those before it.
+/// Most colour steps of all shapes together: each turn of a loop may add one to those before it.
 constexpr std::size_t most_colour_steps = 4'000'000;
 /// The share of the picture below which Context Free draws no shape: 0.3 pixels of 500.
 constexpr double too_small = 6e-4;
@@ -40,7 +40,7 @@ std::uint64_t hash_of(std::string_view text) {
     return hash;
 }
 
-/// The same for all maps that stretch alike, whatever their size: entries of the metric that a map induces.
+/// A text that maps share which stretch alike, whatever their size: entries of the induced metric.
 std::string stretch_text(const Affine& map) {
     const glm::dvec2 across(map.linear[0]), up(map.linear[1]);
     const double area = std::abs(across.x * up.y - across.y * up.x);

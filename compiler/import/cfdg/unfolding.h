@@ -53,7 +53,7 @@ class Unfolding : private SceneWriter {
         bool done = false;
     };
 
-    /// What the lines of a rule are under.
+    /// The context of the lines of a rule.
     struct Under {
         std::size_t node = 0;
         Change change;

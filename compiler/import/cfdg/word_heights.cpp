@@ -11,13 +11,13 @@ namespace graftal::cfdg {
 
 namespace {
 
-/// Of a loop whose count is not known.
+/// Turns that a loop is taken to have if its count is not known.
 constexpr double unknown_turns = 1000;
 /// The share of the height of all sizes that the elements of a rule may take.
 constexpr double most_of_lift = 1e-6;
-/// The same where shapes are translucent, so that engines must see them apart.
+/// The share for elements that are translucent, which engines must see apart.
 constexpr double most_of_lift_of_veils = 0.1;
-/// What both engines see as one veil behind another.
+/// The least distance at which both engines see one veil behind another.
 constexpr double unit_of_veils = 1e-5;
 /// More heights than these are rounded.
 constexpr double most_heights = 1e6;
@@ -43,7 +43,7 @@ double Writer::width_of(const Elements& elements, std::size_t shape) const {
     return width;
 }
 
-/// How many heights an element of a rule of the shape needs.
+/// Number of heights that an element of a rule of the shape needs.
 double Writer::width_of(const Element& element, std::size_t shape) const {
     const double body = width_of(element.body, shape), other = width_of(element.other, shape);
     switch (element.kind) {

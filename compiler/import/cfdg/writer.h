@@ -24,7 +24,7 @@ class Writer : private SceneWriter {
     bool shows_more() const;
 
   private:
-    /// What a place in a rule knows.
+    /// The context of a place in a rule.
     struct Place {
         std::size_t shape = 0;
         Scope scope;
@@ -69,17 +69,17 @@ class Writer : private SceneWriter {
                      const std::vector<std::string>& more = {});
 
     std::string reference(const Element& element, const Place* from, const Scope& scope);
-    /// How a line lies over those before it.
+    /// The height of a line over those before it.
     struct Height {
         double order = 0;    ///< in units of the order
         bool lifts = false;  ///< of shapes, which lie the higher the smaller they are; not of primitives
-        bool block = false;  ///< of what holds elements: where it does not lift, its size changes no heights
+        bool block = false;  ///< of elements in a block: where it does not lift, its size changes no heights
         bool calls = false;  ///< of one shape of rules: it lies over the primitives of its rule
         double width = 0;    ///< of a turn of a loop: the units of all turns,
         std::string each_of; ///< and their number, where it is not known; "" else
     };
     std::optional<Lines> lines_of(const Modification& modification, const Scope& scope, const Height& height);
-    /// How a line changes the size of what it draws.
+    /// The factor by which a line changes the size of its drawing.
     struct Size {
         double known = 1;    ///< in the mean, where chance decides
         std::string factors; ///< `*sqrt(...)` for each that depends on parameters

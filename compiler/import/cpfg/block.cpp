@@ -93,7 +93,7 @@ class BlockReader {
         if (at_ < text_.size()) ++at_;
     }
 
-    /// What stands in the parentheses that come next, as an expression.
+    /// The text in the parentheses that come next, as an expression.
     std::string parenthesis() {
         if (at_end() || text_[at_] != '(') {
             fail("expected '(' behind 'if' or 'while'");

@@ -12,7 +12,7 @@ struct CpfgCompanions {
     std::string environment; ///< of the environment program
 };
 
-/// As the command of the model's `specifications` says; without one, the view file has the model's name.
+/// The files that the model's `specifications` name; else the view file has the model's name.
 CpfgCompanions find_cpfg_companions(const ForeignFile& file);
 
 } // namespace graftal

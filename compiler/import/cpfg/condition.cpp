@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_nested_conditions = 100;
 
-/// By precedence climbing; numbers may have fractions.
+/// Reads a condition by precedence climbing; numbers may have fractions.
 class ConditionReader {
   public:
     explicit ConditionReader(std::string_view text) : text_(text) {}

@@ -17,7 +17,7 @@ constexpr std::size_t most_curve_points = 1000;
 
 using CurvePlace = std::array<double, 3>;
 
-/// Of a piece of four control points, at t of [0, 1].
+/// The place on a piece of four control points, at t of [0, 1].
 CurvePlace spline_at(const CurvePlace* points, double t) {
     const double s = 1 - t;
     const std::array<double, 4> weights = {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6,

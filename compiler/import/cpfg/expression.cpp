@@ -87,7 +87,7 @@ class ExpressionWriter {
         return out;
     }
 
-    /// What stands between the parenthesis at `i` and its end; `i` is then behind that.
+    /// The text between the parenthesis at `i` and its end; moves `i` past that end.
     std::string_view parentheses(std::string_view text, std::size_t& i) {
         const std::size_t begin = ++i;
         int depth = 1;

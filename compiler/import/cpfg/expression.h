@@ -8,14 +8,14 @@
 
 namespace graftal {
 
-/// What stands for a call of a function that cpfg has and we have not: its name, its arguments as they are,
-/// and in our language; nothing for functions that it does not know.
+/// Gives our text for a call of a function that we lack, from its name and its arguments as they are and in
+/// our language. Nothing for functions that it does not know.
 using CpfgCalls = std::function<std::optional<std::string>(std::string_view name,
                                                            std::span<const std::string_view> arguments,
                                                            std::span<const std::string> written)>;
 
-/// What an expression of cpfg is in our language. `complain` hears of what has no translation, after which
-/// the text is of no use.
+/// An expression of cpfg in our language. `complain` hears of parts without a translation, after which the
+/// text is of no use.
 std::string translated_cpfg_expression(std::string_view text, const CpfgCalls& calls,
                                        const std::function<void(const std::string&)>& complain);
 

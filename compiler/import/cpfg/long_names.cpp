@@ -77,7 +77,7 @@ class NameJoiner {
         });
     }
 
-    /// How many modules of the name that begins here; 0 if none does.
+    /// Number of modules of the name that begins here; 0 if none does.
     std::size_t name_at(const CpfgString& string, std::size_t at) const {
         for (const CpfgString& name : names_)
             if (begins_with(string, at, name)) return name.size();

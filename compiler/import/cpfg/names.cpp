@@ -27,7 +27,7 @@ CpfgNames::CpfgNames(const ForeignFile& file, const CpfgSource& source, const Cp
     find_renamed();
 }
 
-/// Those that the blocks of the model assign.
+/// Finds which of `step` and `age` the blocks of the model assign.
 void CpfgNames::find_renamed() {
     for (const CpfgStatement& statement : source_.statements) {
         const std::string small = in_small_letters(trimmed(statement.text).substr(0, 12));
@@ -188,7 +188,7 @@ double beta_quantile(double a, double b, double share) {
 
 } // namespace
 
-/// By a table of the distribution's inverse.
+/// A beta variate, by a table of the distribution's inverse.
 std::string CpfgNames::beta(std::span<const std::string_view> arguments, Span span) {
     std::vector<double> shape;
     for (const std::string_view argument : arguments) {

@@ -15,7 +15,7 @@ namespace graftal {
 
 bool is_cpfg_name(char c);
 
-/// What the names of a cpfg model stand for: its macros and its functions. Reports what stands for nothing.
+/// The meanings of the names of a cpfg model: its macros and its functions. Reports names without a meaning.
 class CpfgNames {
   public:
     /// All must outlive this.

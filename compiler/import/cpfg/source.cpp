@@ -150,7 +150,7 @@ class SourceReader {
         statement_.places.push_back(line.back().place);
     }
 
-    /// Of braces that hold statements: they begin behind a colon, or behind a condition.
+    /// The depth of braces that hold statements: they begin behind a colon, or behind a condition.
     static int depth_of(std::string_view text) {
         const std::size_t colon = text.find(':');
         if (colon == std::string_view::npos) return 0;

@@ -48,7 +48,7 @@ class FunctionCurve {
         return j < order_ ? 0 : std::min(static_cast<double>(j - order_ + 1), pieces());
     }
 
-    /// By de Boor's algorithm.
+    /// The point of the curve at `u`, by de Boor's algorithm.
     CurvePoint at(double u) const {
         const auto piece = static_cast<std::size_t>(std::clamp(std::floor(u), 0.0, pieces() - 1));
         std::array<CurvePoint, 4> d{};

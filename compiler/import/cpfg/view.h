@@ -37,7 +37,7 @@ struct CpfgViewCurve {
     CpfgCurve curve;
 };
 
-/// What the view file of a model says of the turtle.
+/// The turtle's settings in the view file of a model.
 struct CpfgView {
     double angle_deg = 45;
     int colour = 0;

@@ -21,7 +21,7 @@ struct Group {
     std::size_t height = 0;            ///< generations that it takes to its end, where it is not endless
 };
 
-/// What ends the growth of a script.
+/// The limits that end the growth of a script.
 struct Limits {
     int generations = 1000; ///< maxdepth
     double objects = 100'000;
@@ -31,10 +31,10 @@ struct Limits {
 
 /// The map of the operators of a loop, about the middle of the unit cube.
 Affine map_of(const Loop& loop);
-/// By how much it makes the diagonal of the cube longer.
+/// The factor by which a loop makes the diagonal of the cube longer.
 double growth_of(const Loop& loop);
 
-/// Which groups there are, and how they call each other. Requires that the script has no error.
+/// The groups of a script, and how they call each other. Requires that the script has no error.
 class Analysis {
   public:
     /// Counts that an object may have as parameters.

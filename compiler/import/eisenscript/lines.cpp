@@ -18,7 +18,7 @@ namespace graftal::eisenscript {
 
 namespace {
 
-/// What a size of 0 becomes: graftal's maps must be regular.
+/// The size in place of 0: graftal's maps must be regular.
 constexpr double thinnest = 1e-4;
 
 } // namespace
@@ -143,7 +143,7 @@ std::string Writer::transforms(const std::vector<Operator>& operators) {
     return text;
 }
 
-/// As Structure Synth adds the operators of one list up: colours that are set and changed in one are set.
+/// Colours of one list of operators, added up as Structure Synth does: those set and changed in one are set.
 std::string Writer::inks(const std::vector<Operator>& operators) {
     std::array<double, 4> change = {0, 1, 1, 1};
     std::array<std::string, 4> words;

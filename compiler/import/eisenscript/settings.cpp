@@ -1,4 +1,4 @@
-// What `set` says, and the scene that it makes.
+// The settings of `set`, and the scene that they make.
 
 #include <algorithm>
 #include <array>
@@ -157,7 +157,7 @@ void Writer::write_scene() {
     }
 }
 
-/// That graftal chooses the camera itself, where the script says something of it.
+/// Reports that graftal chooses the camera itself, where the script sets one.
 void Writer::report_no_camera() {
     std::string words;
     Span span;

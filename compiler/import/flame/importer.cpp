@@ -274,7 +274,7 @@ class Writer {
                 x += fmt::format("{}({}) * ({})", sign, number(weight), formula.x);
                 y += fmt::format("{}({}) * ({})", sign, number(weight), formula.y);
             }
-            // As flam3 does, a point that runs away begins anew.
+            // A point that runs away begins anew, as in flam3.
             out_.line("    let p = " + x);
             out_.line("    let q = " + y);
             out_.line("    let near = abs(p) < 1e10 && abs(q) < 1e10");

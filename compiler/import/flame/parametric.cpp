@@ -55,7 +55,7 @@ constexpr Part shared[] = {
     {"xmax", "(sqrt(r2 + 1 + 2*u) + sqrt(max(0, r2 + 1 - 2*u))) / 2"},
 };
 
-// As flam3 3.1 computes them (Draves and Reckase, appendix, has most).
+// Formulas of flam3 3.1 (Draves and Reckase, appendix, has most).
 const std::vector<Row>& rows() {
     static const std::vector<Row> all = {
         {"rings", {}, {{"d", "e*e + 1e-10"}, {"n", "mod(r + d, 2*d) - d + r * (1 - d)"}}, "n * ca", "n * sa"},

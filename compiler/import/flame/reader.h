@@ -40,7 +40,7 @@ struct Map {
     bool steers() const {
         return std::ranges::any_of(chaos, [](double factor) { return factor != 1; });
     }
-    /// Of an affine map.
+    /// The whole of an affine map.
     Affine whole() const {
         double factor = 0;
         for (const auto& one : variations)

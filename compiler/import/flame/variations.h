@@ -9,13 +9,13 @@
 
 namespace graftal::flame {
 
-/// What a variation makes of a point (Draves and Reckase, appendix): formulas of x, y, and of r, its distance
-/// from the origin, r2, its square, and theta, the angle atan2(x, y) in radians.
+/// The image of a point under a variation (Draves and Reckase, appendix): formulas of x, y, and of r, its
+/// distance from the origin, r2, its square, and theta, the angle atan2(x, y) in radians.
 struct Formula {
     std::string x, y;
 };
 
-/// What a variation may read besides the point.
+/// The values that a variation may read besides the point.
 struct Setting {
     const Affine& pre; ///< the affine part of its map
     double weight = 1;

@@ -6,7 +6,7 @@
 
 namespace graftal {
 
-/// What a symbol is in our strings, without and with its number `%` in parentheses; "" for none.
+/// The text for a symbol in our strings, without and with its number `%` in parentheses; "" for none.
 struct LparserCommand {
     char symbol;
     const char* text;

@@ -53,7 +53,7 @@ class LparserWriter {
         look(system_.axiom);
         for (const LparserRule& rule : system_.rules)
             look(rule.successor);
-        // What is written behind a symbol stays behind what the symbol becomes.
+        // A number behind a symbol stays behind the last symbol of its successor.
         for (bool grows = true; grows;) {
             grows = false;
             for (const LparserRule& rule : system_.rules) {
@@ -119,7 +119,7 @@ class LparserWriter {
         return fmt::format("{}, {}, {}", shortest(light(r)), shortest(light(g)), shortest(light(b)));
     }
 
-    /// How many there are.
+    /// Writes the materials; gives their number.
     int write_materials(Translation& out) {
         constexpr std::array<std::array<double, 3>, 16> usual = {{{0.5, 0.5, 0.5},
                                                                   {0.5, 0.5, 0.5},
@@ -301,7 +301,7 @@ class LparserWriter {
         return command->text;
     }
 
-    /// As scanf reads it: what follows a number is passed over, and without a number it is 0.
+    /// The number as scanf reads it, without the text behind it; 0 without a number.
     std::string number_of(const LparserSymbol& symbol) {
         if (*symbol.number == "x") return "x";
         const std::string text = symbol.number->substr(0, 40);

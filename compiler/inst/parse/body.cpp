@@ -39,7 +39,7 @@ class BodyParser {
         check_not_empty();
     }
 
-    /// Its '}' was there.
+    /// Whether the object's '}' was there.
     bool closed() const { return closed_; }
 
   private:

@@ -18,10 +18,10 @@ struct InstRange {
     Span span;
 };
 
-/// How places are chosen.
+/// The order in which places are chosen.
 enum class ScatterOrder : std::uint8_t { poisson, uniform, jitter, spiral };
 
-/// What the lines of `scatter:` say, unevaluated.
+/// The lines of `scatter:`, unevaluated.
 struct InstScatter {
     std::optional<Expression> count;
     std::optional<AreaText> over;

@@ -7,7 +7,7 @@
 
 #include "compiler/lsys/compile/grammar.h"
 
-// What is legal in a grammar, but hardly meant.
+// Warnings of grammars that are legal, but hardly meant.
 
 namespace graftal {
 

@@ -278,7 +278,7 @@ class GrammarBuilder {
                std::ranges::any_of(locals_, [&](auto* local) { return local->target == name; });
     }
 
-    /// What is asked before the production is applied knows the local values of the first block only.
+    /// Compiles a rule. Expressions before its application know only the local values of the first block.
     void compile(LsysRule& rule) {
         const LsysProduction& source = *rule.source;
         std::vector<std::string_view> early = rule.slots;
@@ -300,7 +300,7 @@ class GrammarBuilder {
         warn_of_idle_locals(rule);
     }
 
-    /// What draws has no order. Whether it was reported.
+    /// Refuses chance in a production that draws, since drawing has no order. Whether it reported that.
     bool refuse_chance(const LsysProduction& source) {
         const std::size_t errors = diagnostics_.error_count();
         const auto check = [&](const Expression& e) {
@@ -389,7 +389,7 @@ class GrammarBuilder {
         }
     }
 
-    /// What a module is drawn as has the age of the module. True if that made a symbol one of these.
+    /// Hands a module's age on to the modules it is drawn as. Whether that gave a symbol an age.
     bool hand_on_ages() {
         bool changed = false;
         for (const LsysRule& rule : grammar_.rules) {

@@ -23,7 +23,7 @@
 
 namespace graftal {
 
-/// What a production serves.
+/// The use of a production.
 enum class RuleKind : std::uint8_t {
     produce,   ///< a derivation step
     decompose, ///< applied after each step, and to the axiom, until nothing is left to decompose
@@ -31,11 +31,11 @@ enum class RuleKind : std::uint8_t {
 };
 inline constexpr std::size_t rule_kind_count = 3;
 
-/// What of the time a production looks at, as a set. Variables that change are a function of the step, unless
-/// the word is derived in order.
+/// The readings of time that a production looks at, as a set. Variables that change are a function of the
+/// step, unless the word is derived in order.
 using TimeMask = std::uint8_t;
 enum TimeBit : TimeMask { reads_step = 1, reads_age = 2, reads_variables = 4 };
-/// What makes a drawing change between two steps.
+/// Readings that make a drawing change between two steps.
 inline constexpr TimeMask reads_clock = reads_step | reads_age;
 
 /// A module of a context or predecessor.
@@ -60,9 +60,8 @@ struct LsysRule {
     /// The names that expressions may use: of the predecessor, then of what follows it, then of the left
     /// context, then of the right.
     std::vector<std::string_view> variables;
-    /// What the slots of the expressions mean: the variables, then `step` and `age` (or nothing, where names
-    /// of the model hide them), then the local values of the blocks, then as many random numbers as there are
-    /// draws.
+    /// The meanings of the slots: the variables; `step` and `age`, or nothing where names of the model hide
+    /// them; the local values of the blocks; one random number for each draw.
     std::vector<std::string_view> slots;
     TimeMask time = 0;       ///< what is read of it
     std::uint32_t draws = 0; ///< calls of `normal` and `random`
@@ -110,7 +109,7 @@ struct LsysGrammar {
     bool needs_word = false;      ///< some rule sees more of the word than one module, or the next is true
     bool in_order = false;        ///< some rule changes variables, or asks chance, in the order of the word
     bool is_stochastic = false;   ///< some rule is random
-    /// What the rules of a kind that may rewrite a symbol read of the time.
+    /// The time that the rules of a kind read which may rewrite a symbol.
     std::array<std::vector<TimeMask>, rule_kind_count> time_of;
     /// Symbols whose modules are drawn by their age, or by that of what they are drawn as, or rewritten by
     /// it.
@@ -139,12 +138,12 @@ struct LsysGrammar {
     }
     bool has_rules(RuleKind kind, SymbolId symbol) const { return !candidates(kind, symbol).empty(); }
     bool has_rules(RuleKind kind) const;
-    /// By rules of any kind.
+    /// Whether rules of any kind rewrite the symbol.
     bool is_rewritten(SymbolId symbol) const;
     TimeMask time(RuleKind kind, SymbolId symbol) const {
         return time_of[static_cast<std::size_t>(kind)][symbol];
     }
-    /// Of all rules of a kind.
+    /// The time that all rules of a kind read.
     TimeMask time(RuleKind kind) const;
     /// Whether the drawing of a word changes between two steps.
     bool draws_in_time() const { return (time(RuleKind::interpret) & reads_clock) != 0; }

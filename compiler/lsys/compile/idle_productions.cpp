@@ -226,7 +226,7 @@ class IdleProductions {
         }
     }
 
-    /// Of a module that appears, with another number of parameters.
+    /// A use of the same symbol with another number of parameters, by a module that appears.
     const LsysUse* other_use(const Kind& kind) const {
         for (auto use = first_uses_.lower_bound({kind.first, 0});
              use != first_uses_.end() && use->first.first == kind.first; ++use)

@@ -14,9 +14,9 @@ using SymbolId = std::uint16_t;
 using ModuleId = std::uint32_t;
 using ModuleString = std::vector<ModuleId>;
 
-/// What a number would be without rounding, where that can be told: the decimal of some twelve digits that it
-/// is within 8e-15 of itself of; else itself. So 1 + 0.2 + 0.2 + 0.2 + 0.2 + 0.2 is 2, whatever was computed
-/// before.
+/// The number without rounding, where that can be told: the decimal of some twelve digits within 8e-15 of
+/// it, relative to itself; else the number itself. So 1 + 0.2 + 0.2 + 0.2 + 0.2 + 0.2 is 2, whatever was
+/// computed before.
 double unrounded(double number);
 
 /// Numbers that differ by rounding only, made equal: the first that came, unrounded(), stands for all within

@@ -68,11 +68,11 @@ struct LsysProgram {
     bool reads_changing_cells() const;
 };
 
-/// What names mean in a program.
+/// The meanings of names in a program.
 struct LsysProgramNames {
     const Environment& lets;
     const CellPlaces& cells;
-    /// Of the slots; empty for those without. An assignment to one of these sets it.
+    /// The names of the slots; empty for slots without. An assignment to one of these sets it.
     std::span<const std::string_view> slots;
     /// Counts calls of chance, each with a slot of its own behind those with names; null: they are errors.
     std::uint32_t* draws = nullptr;
@@ -100,7 +100,7 @@ class LsysMachine {
                 std::uint64_t most = max_instructions)
         : lets_(lets), diagnostics_(diagnostics), meter_(meter), most_(most) {}
 
-    /// What a program works on.
+    /// The values that a program works on.
     struct State {
         std::span<double> slots;                 ///< with those of chance
         std::span<const std::string_view> names; ///< of the slots

@@ -158,7 +158,7 @@ class SurroundingsBuilder {
         flatten(statement, n, 0);
     }
 
-    /// By the direction that begins at number k, if there is one.
+    /// Flattens along the direction that begins at number k, if there is one.
     void flatten(const LsysEnvironment& statement, const std::vector<double>& n, std::size_t k) {
         if (n.size() == k) return;
         if (n.size() < k + 3) return refuse(statement, k, "a direction is x, y, z");

@@ -19,7 +19,7 @@ namespace {
 /// Rules of one kind may follow each other so often without a step between them.
 constexpr unsigned most_repeated = 1000;
 
-/// So often is it tried whether a production that reads the time fits at last: some seconds of work.
+/// Most tries, in all, of productions that wait for their time: some seconds of work.
 constexpr std::uint64_t most_waits = 10'000'000;
 
 double angle_between(Vec3 a, Vec3 b) {
@@ -117,14 +117,14 @@ std::uint32_t LsysComposer::birth_of(ModuleId module, const Task& task) const {
     return birth == ModuleTable::no_birth ? task.birth : birth;
 }
 
-/// What chance knows of a stage. In a film of growth the same module must draw the same after one step more,
-/// so that there steps are counted from the beginning.
+/// The number of a stage for chance. In a film of growth the same module must draw the same after one step
+/// more, so that there steps are counted from the beginning.
 std::uint32_t LsysComposer::chance_stage(Stage stage, bool drawing) const {
     if (!is_timed_) return stage;
     return drawing ? 0 : 2 * steps_ + 2 - stage;
 }
 
-/// The same of a module: there numbers of modules are not the same after one step more.
+/// The number of a module for chance: in a film ids of modules are not the same after one step more.
 std::uint32_t LsysComposer::chance_module(ModuleId module) const {
     const ModuleTable& modules = rewriter_.modules();
     if (!is_timed_ || FoldedWord::is_piece(module)) return module;
@@ -152,7 +152,7 @@ bool LsysComposer::choose(RuleKind kind, ModuleId module, Stage stage, std::uint
     return true;
 }
 
-/// By a step or a decomposition, at this stage or, if productions read the time, at a later one.
+/// Rewrites by a step or a decomposition, at this stage or, if productions read the time, at a later one.
 bool LsysComposer::rewrite(ModuleId module, Stage stage, std::uint32_t birth, std::uint32_t variant,
                            Unfolded& result) {
     const LsysGrammar& grammar = rewriter_.grammar();
@@ -262,7 +262,7 @@ bool LsysComposer::draw_piece(Task& task, ModuleId piece) {
     return false;
 }
 
-/// Of exits that differ by rounding only.
+/// Makes exits equal that differ by rounding only.
 void LsysComposer::clean_exit(TurtlePart& part) {
     Mat3& exit = part.start_from_exit.linear;
     if (part.mirrors) exit[0] = -exit[0];
@@ -291,13 +291,13 @@ void LsysComposer::complete_piece() {
     if (parts_.size() < max_parts_ / 2) parts_.add(task.module, 0, task.start, std::move(part));
 }
 
-/// What is drawn in place of a part too small to see.
+/// The line that is drawn in place of a part too small to see.
 std::optional<Instance> LsysComposer::line_for(const TurtlePart& part, const Task& task) {
     if (!context_.lines || part.has_bodies) return std::nullopt;
     return context_.bodies.line(part.start_from_exit.translation, task.start.colour, task.span);
 }
 
-/// For another part; if not, it is given up, or an error.
+/// Whether there is room for another part. If not, composing gives up, or that is an error.
 bool LsysComposer::has_room(Span span) {
     const std::size_t count = parts_.size();
     gave_up_ = count >= stop_from_ || (count >= give_up_from_ && few_serve_twice());
@@ -369,7 +369,7 @@ void LsysComposer::complete_task() {
     parts_.add(task.module, task.stage, task.start, std::move(part));
 }
 
-/// Of control points that differ by rounding only.
+/// The control point that stands for all that differ from it by rounding only.
 Vec3 LsysComposer::representative(Vec3 point) {
     const double length = lengths_.representative(glm::length(point));
     return length > 0 ? length * ways_.representative(glm::normalize(point)) : point;

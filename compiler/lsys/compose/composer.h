@@ -30,18 +30,18 @@ struct LsysLimits {
     /// Directions that `$` and tropism look at are taken for equal within this angle, in radians, when a part
     /// is looked up; it is then placed exactly. The displacement is bounded in TurtlePart::error.
     double snap_angle = 0;
-    /// With so many parts of which few serve twice, composing gives up: module by module it is done sooner.
+    /// With this many parts of which few serve twice, composing gives up: drawing by modules is faster.
     std::size_t give_up_from = SIZE_MAX;
-    /// And with so many, that is an error: there will be too many.
+    /// With this many parts of which few serve twice, composing fails: there will be too many.
     std::size_t refuse_from = SIZE_MAX;
-    /// With so many it gives up, whatever the number that serve twice.
+    /// With this many parts, composing gives up, whatever the number that serve twice.
     std::size_t stop_from = SIZE_MAX;
     std::size_t max_bytes = std::size_t{1} << 30; ///< of the parts and their objects; more are an error
     /// Modules that differ in their size only are composed once, and placed as large as they are; null: not.
     const LsysSizes* sizes = nullptr;
-    /// Then the width and the unit that a part finds, relative to its own size, are taken for equal where
-    /// their logarithms differ by less than this, and parameters that reach nothing but widths. The
-    /// displacement is bounded in TurtlePart::error.
+    /// With `sizes`, widths and units relative to a part's size are taken for equal where their logarithms
+    /// differ by less than this; so are parameters that reach nothing but widths. TurtlePart::error bounds
+    /// the displacement.
     double size_step = 0;
     bool steps_unit = true; ///< or the width alone
 };
@@ -62,7 +62,7 @@ class LsysComposer {
     /// and share.
     std::optional<TurtlePart> compose(unsigned steps, const TurtleState& start, double share = 0);
 
-    /// The same for a word that is derived already: its pieces are drawn once, and shared where they are
+    /// The part of a word that is derived already: its pieces are drawn once, and shared where they are
     /// alike. Always the same word, which must outlive this.
     std::optional<TurtlePart> compose_word(const FoldedWord& word, unsigned steps, const TurtleState& start,
                                            double share = 0);
@@ -93,7 +93,7 @@ class LsysComposer {
         Placing placing;
     };
 
-    /// What is drawn in place of a module.
+    /// The alternative that is drawn in place of a module.
     struct Unfolded {
         const Alternative* by = nullptr; ///< null: drawn as it is
         double within = 0;               ///< the alternative, of what the variant chose
@@ -175,7 +175,7 @@ class LsysComposer {
     DirectionTable directions_;
     RotationTable rotations_; ///< of exits
     NumberTable sizes_known_; ///< widths and units
-    // Of control points; never snapped.
+    // Control points; never snapped.
     NumberTable lengths_;
     DirectionTable ways_;
     std::vector<bool> rewritten_; ///< by symbol

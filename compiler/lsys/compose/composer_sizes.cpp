@@ -11,7 +11,7 @@
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
 
-// How the composer looks modules up, and draws them, that differ in their size only.
+// The part of the composer that looks up and draws modules that differ in their size only.
 
 namespace graftal {
 

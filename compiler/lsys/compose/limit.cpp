@@ -144,7 +144,7 @@ class LevelFolder {
         return classes_[x->second] == classes_[y->second];
     }
 
-    /// Of each class the member with most steps left: levels_ are sorted.
+    /// The member with most steps left stands for its class: levels_ are sorted.
     void choose_representatives() {
         for (std::size_t i = 0; i < levels_.size(); ++i)
             representative_.try_emplace(classes_[i], i);

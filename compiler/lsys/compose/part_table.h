@@ -26,7 +26,7 @@ class PartTable {
     const TurtlePart* find(ModuleId module, Stage stage, const TurtleState& start) const;
 
     std::size_t size() const { return parts_.size(); }
-    /// What they take, without what they hold outside themselves.
+    /// Bytes of the parts, without those that they hold outside themselves.
     std::size_t bytes() const { return parts_.size() * sizeof(KnownPart); }
 
   private:

@@ -9,7 +9,7 @@ namespace graftal {
 
 namespace {
 
-/// How an expression goes with the sizes in it: as their power `of`.
+/// The power `of` the sizes in an expression that the expression grows by.
 struct Degree {
     bool any = false;         ///< it is 0, which goes with every power
     std::optional<double> of; ///< nothing: with none
@@ -20,7 +20,7 @@ constexpr Degree of(double degree) {
 }
 constexpr Degree no_degree{};
 
-/// Of a sum, and of whatever takes sizes of one kind only.
+/// The degree of a sum, and of all functions that take sizes of one kind only.
 Degree alike(Degree a, Degree b) {
     if (a.any) return b;
     if (b.any || (a.of && b.of && *a.of == *b.of)) return a;
@@ -31,7 +31,7 @@ Degree number_if(Degree a) {
     return a.any || a.of == 0.0 ? of(0) : no_degree;
 }
 
-/// Of comparisons: both sides grow alike, so that the answer stays.
+/// The degree of a comparison: both sides grow alike, so that the answer stays.
 Degree answer_if(Degree a) {
     return a.any || a.of ? of(0) : no_degree;
 }

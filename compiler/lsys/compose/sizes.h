@@ -11,30 +11,29 @@
 
 namespace graftal {
 
-/// What a parameter of a module means for what becomes of the module.
+/// The effect of a parameter of a module on what the module becomes.
 enum class ParameterRole : std::uint8_t {
     number, ///< anything
     length, ///< a size
     width,  ///< a size that reaches nothing but widths and diameters
 };
 
-/// What the first parameter of a symbol is to the turtle, if it is a size.
+/// The role for the turtle of a symbol's first parameter, if that is a size.
 std::optional<ParameterRole> size_role(const LsysGrammar& grammar, SymbolId symbol);
 
-/// Which parameters are sizes: multiplied by one factor, all sizes of a module make what becomes of it so
-/// many times as large, and change nothing else: no choice of a production, no number, no angle. They are
-/// those that expressions use in a homogeneous way, so that sizes come out of them as sizes (a dimensional
-/// analysis of the productions, Buckingham 1914). What the productions draw at sizes of their own, `F` and
-/// `F(2)`, is absolute: it stays as large as it is.
+/// The parameters that are sizes. One factor on all sizes of a module makes its figure as many times as
+/// large. It changes nothing else: no choice of a production, no number, no angle. Expressions use sizes in
+/// a homogeneous way, so that sizes come out as sizes (a dimensional analysis of the productions, Buckingham
+/// 1914). A size that a production writes itself, `F` or `F(2)`, is absolute and stays.
 class LsysSizes {
   public:
-    /// `inner`: of the models that have some, how many parameters come before their scale. The grammar must
+    /// `inner`: number of parameters before the scale, of the models that have inner ones. The grammar must
     /// outlive this.
     LsysSizes(const LsysGrammar& grammar, std::map<SymbolId, std::size_t> inner);
 
     /// Whether a module that is rewritten has a size.
     bool any() const { return any_; }
-    /// Of a module with so many parameters; empty where all are numbers.
+    /// The roles of the parameters of a module with this arity; empty where all are numbers.
     std::span<const ParameterRole> roles(SymbolId symbol, std::size_t arity) const;
     /// Whether a model is placed with a scale of its own.
     bool gives_scale(SymbolId model, std::size_t arity) const;

@@ -113,7 +113,7 @@ void ContextMatcher::look_at(std::span<const ModuleId> word) {
 
 bool ContextMatcher::matches(const LsysRule& rule, std::uint32_t position, ModuleString& bound) {
     const std::size_t size = bound.size();
-    // Of these many may see the same branches.
+    // Many modules of these symbols may see the same branches.
     const LsysPattern& last = rule.following.empty() ? rule.predecessor : rule.following.back();
     remember_ = grammar_.ignored[last.symbol] || opens(grammar_, last) || closes(grammar_, last);
     if (match_following(rule, position, bound) && match_left(rule.left, position, bound) &&

@@ -58,7 +58,7 @@ class ContextMatcher {
     /// Both must outlive this.
     ContextMatcher(const LsysGrammar& grammar, const ModuleTable& modules);
 
-    /// What matches() looks at from now on. Requires what ContextLinks::build() does; the word must stay.
+    /// Sets the word for matches(). Requires what ContextLinks::build() does; the word must stay.
     void look_at(std::span<const ModuleId> word);
 
     /// The modules next to one towards the root and away from it, as ContextLinks says; `none` for the ids of
@@ -109,7 +109,7 @@ class ContextMatcher {
     std::vector<Range> right_; ///< of the rules, in items_
     std::vector<Item> items_;
     std::span<const ModuleId> word_;
-    /// What find_branch() found, of modules that are ignored themselves: many such may look at the same
+    /// Results of find_branch() for modules that are ignored themselves: many of these may look at the same
     /// branches.
     std::vector<KnownBranch> known_;
     IdTable known_ids_;

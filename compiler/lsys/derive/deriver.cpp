@@ -6,7 +6,7 @@ namespace graftal {
 
 namespace {
 
-/// Of the sequences of a step, those at the positions of a word choose productions; this one decomposes.
+/// The random sequence of a step that decomposes; those at the positions of a word choose productions.
 constexpr std::uint64_t decomposing = UINT64_MAX;
 
 } // namespace
@@ -74,7 +74,7 @@ bool LsysDeriver::finish_step() {
     return !stage_ || stage_(step_, word_);
 }
 
-/// How long the next word is going to be; without chance and contexts.
+/// The length of the next word, of a grammar without chance and contexts.
 std::optional<std::uint64_t> LsysDeriver::count() {
     std::uint64_t length = 0;
     rewriter_.work(word_.size());
@@ -86,7 +86,7 @@ std::optional<std::uint64_t> LsysDeriver::count() {
     return length;
 }
 
-/// The same with both: leaves the runs in chosen_.
+/// The length of the next word, of a grammar with chance or contexts; leaves the runs in chosen_.
 std::optional<std::uint64_t> LsysDeriver::choose() {
     if (successors_.sees_word()) matcher_.look_at(word_);
     const CounterRandom random = random_.sequence(step_);

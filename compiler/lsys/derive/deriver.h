@@ -42,7 +42,7 @@ class LsysDeriver {
     /// takes memory. O(modules of all words), and O(modules * patterns) for contexts.
     std::optional<ModuleString> derive(unsigned steps);
 
-    /// What to do with the words between the steps.
+    /// Sets the stage that gets the words between the steps.
     void after_each_step(LsysStage stage) { stage_ = std::move(stage); }
 
     /// From now on derive() gives up, without an error, where the modules of all words are too different from

@@ -68,8 +68,8 @@ std::size_t FoldedWord::cut_into_runs(std::size_t first, std::size_t last) {
     return last;
 }
 
-/// Of the places in reach, the one where the modules around it have the least hash: whatever came before,
-/// soon the same places are chosen in equal strings. Not inside of a polygon.
+/// The place in reach where the modules around it have the least hash, outside of polygons. Equal strings
+/// soon choose the same places, whatever came before them.
 std::size_t FoldedWord::end_of_run(std::size_t first, std::size_t last) const {
     if (last - first <= longest_run) return last;
     std::size_t end = last;

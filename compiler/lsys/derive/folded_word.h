@@ -22,13 +22,13 @@ class FoldedWord {
 
     /// Modules and pieces that are kept.
     std::size_t size() const { return trunk_.size() + store_.size(); }
-    /// What stands outside of all pieces.
+    /// The modules and pieces outside of all pieces.
     std::span<const ModuleId> trunk() const { return trunk_; }
     /// Whether it is the number of a piece, not a module.
     static bool is_piece(ModuleId module) { return module >= run_mark; }
     /// Whether the piece is a branch; else it is a run.
     static bool is_branch(ModuleId module) { return module >= branch_mark; }
-    /// What stands in a piece; without the brackets.
+    /// The modules and pieces in a piece, without its brackets.
     std::span<const ModuleId> piece(ModuleId number) const {
         const Range& range = ranges_[number & (run_mark - 1)];
         return std::span(store_).subspan(range.first, range.count);

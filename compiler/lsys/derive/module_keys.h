@@ -10,7 +10,7 @@
 
 namespace graftal {
 
-/// What was found out about combinations of modules: a `Value` for each tag and list of modules.
+/// Facts about combinations of modules: a `Value` for each tag and list of modules.
 template<typename Value> class ModuleKeys {
   public:
     /// The value of the combination, for the caller to fill in if it is new; it equals `fresh` then. Valid
@@ -18,7 +18,7 @@ template<typename Value> class ModuleKeys {
     Value& find_or_add(std::uint32_t tag, std::span<const ModuleId> modules, const Value& fresh);
 
     std::size_t size() const { return entries_.size(); }
-    /// Of the lists of all combinations.
+    /// Number of modules in the lists of all combinations.
     std::size_t module_count() const { return modules_.size(); }
     void clear();
 

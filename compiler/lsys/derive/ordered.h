@@ -26,7 +26,7 @@ class LsysOrderedDeriver {
     LsysOrderedDeriver(LsysRewriter& rewriter, Diagnostics& diagnostics, std::uint64_t seed,
                        std::uint64_t max_modules);
 
-    /// As LsysDeriver's.
+    /// Does what LsysDeriver::derive() does.
     std::optional<ModuleString> derive(unsigned steps);
     void after_each_step(LsysStage stage) { stage_ = std::move(stage); }
 

@@ -9,9 +9,9 @@ namespace graftal {
 
 namespace {
 
-/// Of the sequences of a seed, those of the steps choose productions; this one interprets for queries.
+/// The random sequence of a seed that interprets for queries; those of the steps choose productions.
 constexpr std::uint64_t asking = UINT64_MAX - 3;
-/// Interpretations may follow each other so often.
+/// Most interpretations that may follow each other.
 constexpr std::size_t most_query_levels = 1000;
 
 bool is_query(TurtleCommand command) {

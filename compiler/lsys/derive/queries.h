@@ -38,7 +38,7 @@ class LsysQueries {
         Vec3 place{0.0};
         std::vector<double> values;
     };
-    /// What is drawn in place of a module, under way.
+    /// A string that is drawn in place of a module, under way.
     struct Level {
         ModuleString string;
         std::size_t next = 0;

@@ -18,7 +18,7 @@
 
 namespace graftal {
 
-/// What a module may become, and with which probability.
+/// A rule that a module may be rewritten by, and its probability.
 struct Alternative {
     const LsysRule* rule = nullptr;
     double probability = 1;
@@ -40,7 +40,7 @@ struct Moment {
     double age = 0;  ///< of the module
 };
 
-/// Of a module that came into being in step `birth`, if that is known.
+/// The moment of a module that came into being in step `birth`, if that is known.
 inline Moment moment_of(std::uint32_t step, std::uint32_t birth) {
     return {static_cast<double>(step),
             birth == ModuleTable::no_birth ? 0.0 : static_cast<double>(step - birth)};
@@ -51,7 +51,7 @@ inline Moment moment_of(std::uint32_t step, std::uint32_t birth) {
 /// are those of the distribution. A power of two.
 inline constexpr std::uint32_t draw_sets = 64;
 
-/// What became of a rule that was tried on a module.
+/// The result of trying a rule on a module.
 enum class Fit : std::uint8_t { no, yes, error };
 
 /// The different modules of one derivation may not be more.
@@ -73,15 +73,15 @@ class LsysRewriter {
     ModuleTable& modules() { return modules_; }
     const ModuleTable& modules() const { return modules_; }
 
-    /// Who derives or draws by this has looked at so many modules.
+    /// Counts modules that a user of this has looked at to derive or draw.
     void work(std::uint64_t modules = 1) const {
         if (meter_) meter_->add(modules, StagePrice::module);
     }
-    /// Who draws module by module has drawn one.
+    /// Counts a module that a user of this has drawn by itself.
     void work_of_drawing() const {
         if (meter_) meter_->add(1, StagePrice::drawn_module);
     }
-    /// Who composes has made a part of so many instances.
+    /// Counts a part with this many instances that a user of this has composed.
     void work_of_part(std::size_t instances) const {
         if (meter_)
             meter_->add(1, StagePrice::part + StagePrice::part_instance * static_cast<double>(instances));
@@ -117,17 +117,17 @@ class LsysRewriter {
     /// not what they are drawn as. `no_birth`: no longer.
     void set_birth(std::uint32_t step) { birth_ = step; }
 
-    /// The same for one rule and the values of its variables, those of the contexts included. Nothing if its
-    /// condition is false, or after an error.
+    /// Whether the rule's condition holds for the values of its variables, those of contexts included.
+    /// Nothing after an error, or if it is false.
     bool condition_holds(const LsysRule& rule, std::span<const double> values, const Moment& moment);
-    /// The steps of applying a rule, for who keeps its slots. `slots` has the values of its variables, from
-    /// `first` on and last, and gets what else the rule's condition knows; then, if it is applied, one of the
-    /// draw_sets, and what its second block assigns. False after an error.
+    /// The steps of applying a rule, for callers that keep its slots. `slots` has the values of its
+    /// variables, from `first` on and last, and gets what else the rule's condition knows. Once applied, it
+    /// gets one of the draw_sets, and the assignments of the second block. False after an error.
     bool try_slots(const LsysRule& rule, const Moment& moment, std::vector<double>& slots,
                    std::size_t first = 0);
     bool apply_slots(const LsysRule& rule, const Moment& moment, std::uint32_t set,
                      std::vector<double>& slots, std::size_t first = 0);
-    /// Of a rule whose slots are ready: whether its condition holds; nothing after an error.
+    /// Whether the condition of a rule holds whose slots are ready; nothing after an error.
     std::optional<bool> holds(const LsysRule& rule, const Moment& moment, std::span<const double> slots);
     std::optional<double> probability_of(const LsysRule& rule, const Moment& moment,
                                          std::span<const double> slots);
@@ -166,7 +166,7 @@ class LsysRewriter {
 
     bool failed() const { return failed_; }
 
-    /// What to do where there are too many different modules or parts.
+    /// The hint where there are too many different modules or parts.
     const char* explosion_hint() const;
 
   private:
@@ -174,7 +174,7 @@ class LsysRewriter {
     static constexpr std::uint32_t none = UINT32_MAX - 1;
     static constexpr std::uint32_t error = UINT32_MAX - 2;
 
-    /// Of a module whose rules read the time.
+    /// The result of rewriting a module whose rules read the time.
     struct Timed {
         RuleKind kind;
         ModuleId module;

@@ -9,9 +9,9 @@ namespace graftal {
 
 namespace {
 
-/// Of the sequences of a seed, those of the steps choose productions; this one interprets.
+/// The random sequence of a seed that interprets; those of the steps choose productions.
 constexpr std::uint64_t interpreting = UINT64_MAX - 1;
-/// Interpretations may follow each other so often.
+/// Most interpretations that may follow each other.
 constexpr std::uint32_t most_interpretations = 1000;
 
 } // namespace
@@ -160,7 +160,7 @@ bool LsysStream::push(const Chosen& chosen, const Module& module, const Moment& 
     return true;
 }
 
-/// As LsysSuccessors does, to the last bit. No rule: none fits. False after an error.
+/// Chooses as LsysSuccessors does, to the last bit. No rule: none fits. False after an error.
 bool LsysStream::choose(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
                         Chosen& chosen) {
     const std::span<const double> values = parameters(module);

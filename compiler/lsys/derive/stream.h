@@ -46,7 +46,7 @@ class LsysStream {
     /// Draws a word that is derived already. Requires can_draw().
     bool draw(const FoldedWord& word, Turtle& turtle);
 
-    /// Of the word.
+    /// Number of modules of the word.
     std::uint64_t module_count() const { return modules_; }
 
   private:

@@ -65,7 +65,7 @@ LsysSuccessors::Entry LsysSuccessors::compute(ModuleId module) {
     return entries_[module] = entry;
 }
 
-/// Of a module that contexts decide about: the run that leaves it as it is, with the mark.
+/// The entry of a module: where contexts decide, the run that leaves the module as it is, with the mark.
 LsysSuccessors::Entry LsysSuccessors::compute_entry(ModuleId module) {
     std::optional<const LsysRule*> first = nullptr;
     const bool has_contexts = contexts(module).sight != Sight::none;
@@ -104,7 +104,7 @@ std::optional<LsysSuccessors::Replacement> LsysSuccessors::choose(ModuleId modul
     return Replacement{*run, choice->modules};
 }
 
-/// What chance gives within a choice has nothing to do with the choice itself.
+/// The run of a choice. Chance within a choice has nothing to do with the choice itself.
 std::optional<RunId> LsysSuccessors::run_of(const Choice& choice, std::uint64_t draw) {
     constexpr RunId unknown_run = UINT32_MAX;
     if (!choice.draws) return choice.run;
@@ -146,7 +146,7 @@ std::optional<const LsysRule*> LsysSuccessors::compete_in_context(ModuleId modul
     });
 }
 
-/// What the rules in competing_ make of a module that stays if there are none.
+/// The entry that the rules in competing_ give a module; `stays` if there are none.
 LsysSuccessors::Entry LsysSuccessors::entry_of(const LsysRule* first, RunId stays,
                                                std::vector<Choice>& choices) {
     if (!first) return stays;

@@ -14,7 +14,7 @@
 
 namespace graftal {
 
-/// What the modules of a derivation become in a step, as runs. Each distinct module is rewritten once, and
+/// The runs that the modules of a derivation become in a step. Each distinct module is rewritten once, and
 /// once for each combination of modules that the contexts of a production match around it.
 class LsysSuccessors {
   public:
@@ -41,7 +41,7 @@ class LsysSuccessors {
 
     /// The run of a module whose entry is known to be one.
     RunId run(ModuleId module) const { return entries_[module]; }
-    /// What takes the place of some modules of a word.
+    /// The run that takes the place of some modules of a word.
     struct Replacement {
         RunId run = 0;
         std::uint32_t modules = 1;
@@ -68,7 +68,7 @@ class LsysSuccessors {
         std::uint32_t bound_count = 0;
         std::uint32_t modules = 1; ///< that it replaces
     };
-    /// What became of a rule.
+    /// The result of trying a rule.
     struct Outcome {
         Fit fit = Fit::no;
         double probability = 1;
@@ -78,7 +78,7 @@ class LsysSuccessors {
         std::uint32_t bound_count = 0;
         std::uint32_t modules = 1;
     };
-    /// How far the productions of a symbol look.
+    /// The reach of the contexts of a symbol's productions.
     enum class Sight : std::uint8_t {
         none, ///< at the module alone
         near, ///< and at most at one module towards the root and one away from it

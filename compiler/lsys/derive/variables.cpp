@@ -10,7 +10,7 @@ namespace {
 
 /// The blocks of a step each have random numbers of their own.
 constexpr std::uint64_t parts_of_step = 4;
-/// Of the sequences of a seed, this one is that of the variables.
+/// The random sequence of a seed that is for the variables.
 constexpr std::uint64_t of_variables = UINT64_MAX - 2;
 
 } // namespace

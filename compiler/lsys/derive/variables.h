@@ -36,7 +36,7 @@ class LsysVariables {
     bool start_each(unsigned step);
     bool end_each(unsigned step);
     bool end(unsigned steps);
-    /// As they are now.
+    /// The values as they are now.
     std::span<double> now() { return now_; }
     std::span<const double> now() const { return now_; }
 

@@ -7,7 +7,7 @@
 #include "compiler/lsys/compile/module_table.h"
 #include "compiler/support/diagnostics.h"
 
-// What is done with whole words between the steps of a derivation.
+// Stages that get whole words between the steps of a derivation.
 
 namespace graftal {
 

@@ -147,7 +147,7 @@ class BlockParser {
         return scanner_.text().substr(statement.begin, statement.end - statement.begin);
     }
 
-    /// What follows the statement's word and its colon, as tokens.
+    /// The tokens behind the statement's word and its colon.
     TokenStream values(const LsysStatement& statement) {
         TokenStream stream =
             text_.tokens(statement.begin + statement.word.size(), statement.end, lsys_line_end);
@@ -155,7 +155,7 @@ class BlockParser {
         return stream;
     }
 
-    /// The same as a string of modules.
+    /// The modules behind the statement's word and its colon.
     LsysStringReader string(const LsysStatement& statement) {
         LsysStringReader reader(text_, statement.begin + statement.word.size(), statement.end);
         reader.accept(':');

@@ -69,7 +69,7 @@ class CommandParser {
         return command.value && end_statement();
     }
 
-    /// What other languages have.
+    /// Refuses the assignments of other languages.
     bool refuse_other() {
         const Token name = stream_.next();
         const Token& sign = stream_.peek();

@@ -45,7 +45,7 @@ class ProductionParser {
         bool good = parse_left_side() && parse_condition() && parse_arrow();
         if (good) good = parse_successor(); // its errors are independent of those of the parameters
         if (good && !locals_.empty()) good = write_out_locals();
-        // What is carried out whenever the production fits, is so when it is applied, if it does not compete.
+        // A block before the condition can as well come after it, if the production does not compete.
         if (lone_block_ && !production_.probability) std::swap(production_.before, production_.after);
         return good && check_parameters() ? std::optional(std::move(production_)) : std::nullopt;
     }
@@ -136,7 +136,7 @@ class ProductionParser {
         return production_.label.text.empty() ? statement_.begin : production_.label.span.end + 1;
     }
 
-    /// What was meant otherwise: a name that is not declared, an arrow of three signs.
+    /// Guesses the statement that was meant: a name that is not declared, an arrow of three signs.
     bool check_several(const Formals& modules) {
         const Span span = join(modules.front().span, modules.back().span);
         const std::string_view text = text_.scanner.text().substr(span.begin, span.end - span.begin);

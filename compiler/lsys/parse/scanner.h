@@ -77,8 +77,8 @@ class LsysScanner {
     /// Past the bracket that closes the '(' or '{' at `open`, outside of comments, or nothing if none does
     /// before `end`.
     std::optional<std::size_t> bracket_end(std::size_t open, std::size_t end) const;
-    /// Of the first arrow outside of parentheses and braces from `at` on, or, without one, of the first
-    /// inside.
+    /// The place of the first arrow outside of parentheses and braces from `at` on or, without one, of the
+    /// first inside.
     std::optional<std::size_t> find_arrow(std::size_t at, std::size_t end) const;
 
     /// Reports "expected WHAT, found ..." at a place.

@@ -185,7 +185,7 @@ bool LsysStringReader::take_room(const Raw& raw) {
     return false;
 }
 
-/// What is no symbol, stepped over so that the rest is read too.
+/// Reports a character that is no symbol, and steps over it so that the rest is read too.
 bool LsysStringReader::stray() {
     const char c = scanner_.text()[at_];
     if (c == ')') {
@@ -200,7 +200,7 @@ bool LsysStringReader::stray() {
         do
             ++at_;
         while (at_ < end_ && (scanner_.text()[at_] & 0x80) != 0);
-        // What looks like its parameters is no mistake of its own.
+        // Parameters behind a stray name are no mistake of their own.
         if (at_ < end_ && scanner_.text()[at_] == '(') at_ = scanner_.bracket_end(at_, end_).value_or(end_);
         return false;
     }

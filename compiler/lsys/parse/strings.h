@@ -26,7 +26,7 @@ class LsysSymbols {
     std::set<std::string_view> names_;
 };
 
-/// What all statements of a file share.
+/// State that all statements of a file share.
 struct LsysText {
     const SourceMap& sources;
     const LsysScanner& scanner;
@@ -62,9 +62,9 @@ class LsysStringReader {
     /// Modules up to '<', '>', ':', '*', an arrow or the end. The readers return false after an error.
     /// `balanced`: square brackets that do not match are an error.
     bool read_modules(std::vector<LsysModule>& modules, bool balanced = true);
-    /// The same with names for parameters.
+    /// Modules with names for parameters, as far as read_modules() reads.
     bool read_formals(std::vector<LsysFormal>& modules);
-    /// The same without parameters, for `ignore` and `consider`.
+    /// Modules without parameters, for `ignore` and `consider`.
     bool read_symbols(std::vector<Name>& symbols);
     /// An expression that goes on to `end`.
     std::optional<Expression> read_expression(std::size_t end, std::string_view end_name);
@@ -117,7 +117,7 @@ struct LsysBrackets {
     std::size_t closed = 0;
     std::size_t open = 0;
 
-    /// What it becomes by the next symbol.
+    /// Counts the next symbol.
     void add(std::string_view symbol);
 };
 

@@ -6,7 +6,7 @@
 
 namespace graftal {
 
-/// What a symbol tells the turtle (docs/language.md, "The turtle").
+/// The command that a symbol gives the turtle (docs/language.md, "The turtle").
 enum class TurtleCommand : std::uint8_t {
     none, ///< a letter that the turtle passes over
     draw,
@@ -63,7 +63,7 @@ enum class TurtleCommand : std::uint8_t {
 /// When tropisms bend the turtle.
 enum class Bending : std::uint8_t { after_segments, after_moves, before_moves };
 
-/// How a tropism acts.
+/// The action of a tropism.
 struct TropismKind {
     double toward = 1; ///< cosine of the angle with the direction that headings tend to
     double across = 0; ///< its sine

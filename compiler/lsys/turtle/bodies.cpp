@@ -14,7 +14,7 @@ namespace graftal {
 
 namespace {
 
-/// Of a disc, per diameter.
+/// The thickness of a disc, per diameter.
 constexpr double disc_thickness = 1e-3;
 
 /// Places the canonical triangle on three corners.

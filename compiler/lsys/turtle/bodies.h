@@ -47,7 +47,7 @@ class TurtleBodies {
     /// taper is rounded to 1/128 (primitive.h).
     void add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width, int colour,
                    Span span, BodySink sink);
-    /// What stands for a line from the start to `end` where it is too small to see: as thick as it is long,
+    /// The body in place of a line from the start to `end` that is too small to see: as thick as it is long,
     /// so that fine curves stay visible. Nothing if the points are equal.
     std::optional<Instance> line(Vec3 end, int colour, Span span);
     void add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span, BodySink sink);

@@ -42,7 +42,7 @@ void Turtle::flip() {
     mirrored_ = !mirrored_;
 }
 
-/// By columns: what is not turned stays as it is, to the last bit.
+/// Turns column by column: a column that is not turned stays as it is, to the last bit.
 void Turtle::turn(Axis axis, double angle_deg) {
     const auto [cosine, sine] = cos_sin_deg(angle_deg);
     const int k = static_cast<int>(axis);
@@ -80,9 +80,8 @@ void Turtle::bend() {
     start_from_turtle_.linear = Affine::rotate(axis, angle_deg).linear * start_from_turtle_.linear;
 }
 
-/// The same with the sum of e T of all tropisms for e T. One at an angle g to its direction pulls with e (T
-/// cos g
-/// + P sin g), P the direction of the heading's part across T; those that twist do so after that.
+/// Bends by the sum of the pulls of all tropisms. One at an angle g to its direction T pulls with e (T cos g
+/// + P sin g). P is the direction of the heading's part across T. Tropisms that twist do so after that.
 void Turtle::bend_to_all() {
     note(reads_tropisms);
     if (state_.elasticity != 0) note(reads_tropism);
@@ -194,7 +193,7 @@ bool Turtle::head_to(std::span<const double> parameters, Span span) {
     return true;
 }
 
-/// By the smallest rotation that does; back, about z.
+/// Turns by the smallest rotation to the heading; backwards, about z.
 void Turtle::turn_to(Vec3 heading) {
     const Vec3 ahead = start_from_turtle_.linear[1];
     const Vec3 axis = glm::cross(ahead, heading);
@@ -209,7 +208,7 @@ void Turtle::turn_to(Vec3 heading) {
     start_from_turtle_.linear[1] = heading;
 }
 
-/// By e |H x V|, in radians, about the turtle's own axis: so L-Parser bends branches.
+/// Bends by e |H x V|, in radians, about the turtle's own axis: so L-Parser bends branches.
 void Turtle::bend_down(double elasticity) {
     note(reads_vertical);
     const double sine = glm::length(glm::cross(start_from_turtle_.linear[1], state_.vertical));

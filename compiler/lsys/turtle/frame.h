@@ -6,7 +6,7 @@
 #include "compiler/lsys/parse/turtle_command.h"
 #include "compiler/support/affine.h"
 
-// What the turtle of some models knows of the world beside its own frame.
+// The world that the turtle of some models knows beside its own frame.
 
 namespace graftal {
 
@@ -24,7 +24,7 @@ struct TurtleFrame {
     std::array<Tropism, most_other_tropisms> tropisms; ///< all beside the first
 };
 
-/// The same from a frame whose turtle stands here, in which all is `scale` times as long.
+/// The frame as seen by a turtle that stands here, in a frame where all is `scale` times as long.
 TurtleFrame seen_from(const TurtleFrame& frame, const Affine& start_from_turtle, double scale);
 
 /// A hash with one number more, bit by bit.

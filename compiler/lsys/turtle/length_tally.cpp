@@ -47,7 +47,7 @@ void LengthTally::add(const LengthTally& other, double scale) {
     }
 }
 
-/// Of its bin, which is made if there is none.
+/// The place of a quarter's bin, which is made if there is none.
 std::size_t LengthTally::place_of(int quarter) {
     auto place = std::ranges::lower_bound(bins_, quarter, {}, &Bin::quarter);
     if (place == bins_.end() || place->quarter != quarter) place = bins_.insert(place, Bin{quarter});

@@ -6,8 +6,8 @@
 
 namespace graftal {
 
-/// How many segments of which length are drawn: lengths by the quarter of an octave, counts by their
-/// logarithms, since they go beyond doubles.
+/// Number of drawn segments by length: lengths to the quarter of an octave, counts as logarithms, since they
+/// go beyond doubles.
 class LengthTally {
   public:
     /// Requires a positive length.

@@ -15,7 +15,7 @@ struct PlacedModel {
     Vec3 scale{1.0}; ///< across, along and above the turtle
 };
 
-/// What `~NAME` with these parameters places; nothing after an error at the span.
+/// Gives the model that `~NAME` with these parameters places; nothing after an error at the span.
 using ModelPlacer = std::function<std::optional<PlacedModel>(SymbolId model, std::span<const double>, Span)>;
 
 /// The scale that parameters ask for: none, one for all directions, or k1, k2 across and along, with sqrt|k1

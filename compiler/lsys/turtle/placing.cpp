@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-// How a turtle places parts that are composed already.
+// The part of the turtle that places parts composed already.
 
 namespace graftal {
 

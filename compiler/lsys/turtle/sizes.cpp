@@ -34,14 +34,14 @@ double Turtle::usual_angle() {
     return state_.angle_factor * context_.angle_deg;
 }
 
-/// How long a length is that a string writes.
+/// The length in the model of a length that a string writes.
 double Turtle::written(double length) {
     if (!context_.varies_step) return scale_ * length;
     note(reads_ruler);
     return state_.ruler * length;
 }
 
-/// Of what is as thick as a segment.
+/// The diameter of things as thick as a segment.
 double Turtle::usual_diameter() {
     return context_.relative_width ? read_width() * scale_ * context_.step * read_unit() : read_width();
 }
@@ -117,7 +117,7 @@ bool Turtle::multiply_angle(double factor, Span span) {
     return false;
 }
 
-/// Of something round that is drawn here.
+/// Notes the radius of something round that is drawn here.
 void Turtle::note_radius(double radius, WidthSource source) {
     part_.thickest = std::max(part_.thickest, radius);
     const double own_error = source == width_source_ ? width_error_ * radius : 0;

@@ -14,8 +14,8 @@ namespace graftal {
 
 using Quat = glm::dquat;
 
-/// What a part of a model may depend on besides the place where it stands: the state of the turtle that
-/// comes in. Directions are given in the frame that the part starts in.
+/// The state of the turtle that comes in: all that a part of a model may depend on besides its place.
+/// Directions are given in the frame that the part starts in.
 struct TurtleState {
     double width = 0;
     std::uint8_t tapers = 0; ///< of its branch and those that this leaves, at most most_tapers
@@ -66,7 +66,7 @@ enum TurtleStateBit : TurtleStateMask {
     reads_tapers = 524288,
 };
 
-/// The same in a frame in which all is this many times as long.
+/// The state in a frame in which all is this many times as long.
 TurtleState scaled(TurtleState state, double factor);
 
 /// True if the members of `mask` are equal.
@@ -92,15 +92,15 @@ class DirectionTable {
     IdTable ids_; ///< by cells of four tolerances
 };
 
-/// The same for rotations, by rounding only. Without this the errors of a rotation that is composed of seven
-/// like itself, level by level, would grow sevenfold a level.
+/// Rotations that differ by rounding only, made equal. Without this the errors of a rotation that is
+/// composed of seven like itself, level by level, would grow sevenfold a level.
 class RotationTable {
   public:
     RotationTable() { representative(Mat3(1.0)); } // exactly, for what comes near it
 
     /// Requires a rotation, up to rounding, and gives one.
     Mat3 representative(const Mat3& rotation);
-    /// The same; of equal rotations the numbers are equal.
+    /// The quaternion that stands for one; for equal rotations its numbers are equal.
     Quat representative(const Quat& rotation);
 
   private:

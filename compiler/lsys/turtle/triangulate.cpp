@@ -52,8 +52,8 @@ class EarClipper {
             // Where nothing is an ear, the polygon crosses itself: then the next corner has to do.
             if (ears_[at] || since_ear > left_.size()) {
                 clip(at);
-                // Of the others none becomes an ear by that (O'Rourke, Computational Geometry in C,
-                // section 1.4), unless the polygon touches itself.
+                // No other corner becomes an ear by that (O'Rourke, Computational Geometry in C, section
+                // 1.4), unless the polygon touches itself.
                 update((at + left_.size() - 1) % left_.size());
                 update(at % left_.size());
                 updated_ = false;

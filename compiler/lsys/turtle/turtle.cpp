@@ -17,7 +17,7 @@ namespace graftal {
 
 namespace {
 
-/// They are cut into triangles in a time that goes with the square.
+/// Polygons are cut into triangles in a time that grows with the square of this.
 constexpr std::size_t max_polygon_vertices = 10'000;
 /// Parts keep the vertices of those that they leave open.
 constexpr std::size_t max_polygon_nesting = 1000;
@@ -26,7 +26,7 @@ double first_or(std::span<const double> parameters, double otherwise) {
     return parameters.empty() ? otherwise : parameters[0];
 }
 
-/// What the first parameter of a command is, where it must stay in the range of numbers.
+/// The name of a command's first parameter, where that must stay in the range of numbers.
 const char* size_name(TurtleCommand command) {
     switch (command) {
     case TurtleCommand::draw:
@@ -312,7 +312,7 @@ void Turtle::add_model(const PlacedModel& model, bool absolute, Span span) {
     PlacedModel placed = model;
     placed.scale *= written(1);
     context_.bodies.add_model(placed, start_from_turtle_, span, sink(false));
-    // Of primitives no point lies farther from their origin; with others the unit is never off.
+    // Points of primitives lie no farther from their origin; with others the unit is never off.
     constexpr double farthest = 2;
     if (absolute) note_radius(farthest * largest_entry(placed.scale), WidthSource::unit);
 }

@@ -18,7 +18,7 @@
 
 namespace graftal {
 
-/// How far things may lie from where they belong.
+/// Bounds on the distance of things from where they belong.
 struct Displacement {
     double exit_turn = 0;  ///< of the exit's orientation, radians
     double exit_shift = 0; ///< of the exit's position
@@ -32,7 +32,7 @@ enum class WidthSource : std::uint8_t {
     sizes, ///< parameters that are sizes
 };
 
-/// What a string of modules draws, in the frame of the turtle at its start, and how it leaves the turtle.
+/// The drawing of a string of modules, in the frame of the turtle at its start, and the state it leaves.
 struct TurtlePart {
     std::vector<Instance> instances;
     /// The end of a polygon that was open at the start: its last vertices, drawn in this colour.
@@ -69,21 +69,21 @@ struct TurtlePart {
     BigCount bodies = 0; ///< spheres, discs, models and polygons
 };
 
-/// How a part is placed.
+/// The way in which a part is placed.
 struct Placing {
-    double snap = 0;       ///< by this angle its directions are off
-    double scale = 1;      ///< it is drawn so many times as large
+    double snap = 0;       ///< angle by which its directions are off
+    double scale = 1;      ///< factor of its size
     bool absolute = false; ///< the scale is one in units
-    // By so much the logarithms are off of what the part was composed for:
+    // Differences of logarithms between the values here and those that the part was composed for:
     double width_error = 0; ///< of the width that came in
     double unit_error = 0;  ///< of the unit
     double size_error = 0;  ///< of parameters that reach nothing but widths
 };
 
-/// In one run; each takes 64 bytes.
+/// Most items in one run; each takes 64 bytes.
 inline constexpr std::size_t max_run_items = 32'000'000;
 
-/// What all turtles of a model share.
+/// The state that all turtles of a model share.
 struct TurtleContext {
     TurtleBodies& bodies;
     Diagnostics& diagnostics;
@@ -132,7 +132,7 @@ class Turtle {
     /// Places a part whose entry state was scaled(state(), 1 / scale), except for what the placing says:
     /// draws it, and goes where it leaves the turtle.
     void append(const TurtlePart& part, Span span, const Placing& placing = {});
-    /// The same, but the turtle stays as it is: a branch.
+    /// Places a part as a branch, which leaves the turtle as it is.
     void append_branch(const TurtlePart& part, Span span, const Placing& placing = {});
 
     /// Begins and ends a branch, as `[` and `]` do.
@@ -141,7 +141,7 @@ class Turtle {
 
     /// Notes that what is drawn depends on state().variant.
     void read_variant() { note(reads_variant); }
-    /// The same for state().birth.
+    /// Notes that what is drawn depends on state().birth.
     void read_birth() { note(reads_birth); }
 
     /// False after the error that there is too much, or that it lies too far; run() looks at it, append()
@@ -162,7 +162,7 @@ class Turtle {
     TurtlePart finish() &&;
 
   private:
-    /// How far the turtle itself is off.
+    /// The distance of the turtle itself from where it belongs.
     struct Drift {
         double turn = 0;
         double shift = 0;
@@ -182,7 +182,7 @@ class Turtle {
         std::size_t polygons = 0; ///< open ones
     };
 
-    /// Of the turtle, by columns.
+    /// Axes of the turtle, in the order of the columns of its frame.
     enum class Axis { right, ahead, up };
 
     bool in_range(TurtleCommand command, std::span<const double> parameters,

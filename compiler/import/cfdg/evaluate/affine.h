@@ -11,7 +11,7 @@
 
 namespace graftal::cfdg {
 
-/// Of each word the last adjustment, which replaces those before it, in the order of the words.
+/// The last adjustment of each word, which replaces those before it, in the order of the words.
 std::vector<const Adjustment*> last_of_each(const Modification& modification,
                                             std::span<const std::string_view> words);
 

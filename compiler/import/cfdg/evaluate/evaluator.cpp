@@ -20,7 +20,7 @@ constexpr std::size_t most_evaluations = 100'000'000; ///< expressions that are 
 constexpr std::size_t longest_vector = 10'000;
 constexpr double endless = 1e38;
 
-/// How many numbers a parameter of this type holds.
+/// Number of numbers that a parameter of this type holds.
 std::size_t numbers_of_type(std::string_view type) {
     if (!type.starts_with("vector")) return 1;
     std::size_t size = 0;

@@ -36,13 +36,13 @@ class Evaluator {
     }
 
     std::optional<Value> value(const Expr& expression, const Surroundings& at);
-    /// Those of vectors and lists one after the other.
+    /// The numbers of an expression: those of vectors and lists one after the other.
     std::optional<std::vector<double>> numbers(const Expr& expression, const Surroundings& at);
     std::optional<double> number(const Expr& expression, const Surroundings& at);
     std::optional<Change> change(const Modification& modification, const Surroundings& at);
     /// The shape that an element names, with its arguments; it may be a primitive.
     std::optional<ShapeValue> shape(const Element& element, const Surroundings& at);
-    /// What the parameters mean: one argument each, or as many numbers as their types hold.
+    /// The values of the parameters: one argument each, or as many numbers as their types hold.
     std::optional<Values> bind(const std::vector<Parameter>& parameters, const std::vector<Value>& arguments,
                                Span place);
 
@@ -56,7 +56,7 @@ class Evaluator {
 
     /// The random numbers of the rule that is evaluated.
     Draws draws;
-    /// That is left for the outlines of all paths: sides that are compared.
+    /// Comparisons of sides that are left for the outlines of all paths.
     std::size_t outline_work = 100'000'000;
 
   private:
@@ -92,14 +92,14 @@ class Evaluator {
     std::size_t work_ = 0;
 };
 
-/// Those of a modification in the order in which they multiply, with colours behind them: x y z, r, s, skew,
-/// f, transform; as written where the modification keeps its order.
+/// The adjustments of a modification in the order in which they multiply, then colours: x y z, r, s, skew,
+/// f, transform. Where the modification keeps its order, they are as written.
 std::vector<const Adjustment*> in_order(const Modification& modification);
 
 /// Whether the adjustment belongs to lines of paths, which read it themselves.
 bool is_of_paths(std::string_view word);
 
-/// Of a color's steps.
+/// The colour channel that an adjustment steps.
 std::optional<Channel> channel_of(const Adjustment& adjustment);
 
 /// Whether the name is that of a primitive: CIRCLE, SQUARE or TRIANGLE, or a sign for one; which one, or "".

@@ -11,7 +11,7 @@
 
 namespace graftal::cfdg {
 
-/// What names mean at a place: our text for them.
+/// Names at a place, and our text for them.
 using Scope = std::map<std::string, std::string>;
 /// Names with known numbers.
 using Numbers = std::map<std::string, double>;
@@ -30,7 +30,7 @@ class Expressions {
     std::optional<std::string> text(const Expr& expression, const Scope& scope);
     /// The number, without an error: nothing if it depends on parameters or chance.
     std::optional<double> number(const Expr& expression, const Numbers& known = {}) const;
-    /// What the number can be.
+    /// The range of numbers that the expression may give.
     std::optional<Interval> range(const Expr& expression) const;
     /// Whether the name of a variable or an index occurs in it.
     static bool mentions(const Expr& expression, const std::string& name);

@@ -50,7 +50,7 @@ struct ShapeValue {
     std::vector<Value> arguments;
 };
 
-/// What an expression gives.
+/// The result of an expression.
 struct Value {
     enum class Kind : std::uint8_t { numbers, change, shape, flags };
 
@@ -63,7 +63,7 @@ struct Value {
     static Value of(double number) { return {.numbers = {number}}; }
 };
 
-/// What the names of a rule mean.
+/// The values of the names of a rule.
 using Values = std::map<std::string, Value>;
 
 /// A text that only equal values share.

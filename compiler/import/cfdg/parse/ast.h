@@ -57,7 +57,7 @@ struct Element {
 
     Kind kind = Kind::shape;
     std::string name; ///< of a shape, an index, a variable or a path operation
-    /// Of a shape or an operation; the count, condition or value of others; the adjustments of a transform.
+    /// The arguments of a shape or operation; a transform's adjustments; a count, condition or value.
     std::vector<Expr> arguments;
     bool reuses_arguments = false; ///< `shape(=)`
     bool computed = false;         ///< the shape is what the only argument gives: `if(a, B, C) []`
@@ -105,7 +105,7 @@ struct Definition {
     std::vector<std::string> comments;
 };
 
-/// What a name of a file in the name space may mean, the innermost first: "a::b::x", "a::x", "x".
+/// Finds the meaning of a name used in a name space, the innermost first: "a::b::x", "a::x", "x".
 template<typename Found> auto in_spaces(std::string_view name, std::string_view space, const Found& find) {
     while (true) {
         if (auto found = find(std::string(space) + std::string(name)); found || space.empty()) return found;

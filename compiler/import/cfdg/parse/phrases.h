@@ -15,8 +15,8 @@
 
 namespace graftal::cfdg {
 
-/// What statements consist of: the tokens of a file, its adjustments and expressions. Functions that parse
-/// give nothing, or false, after an error.
+/// The parts of statements: the tokens of a file, its adjustments and expressions. Functions that parse give
+/// nothing, or false, after an error.
 class Phrases {
   protected:
     explicit Phrases(const ForeignFile& file) : file_(file), tokens_(tokenize(file)) {}

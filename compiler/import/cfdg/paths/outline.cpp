@@ -260,7 +260,7 @@ class Filler {
     std::size_t& left_;
 };
 
-/// What is closer than this is rounding.
+/// The distance below which a difference is rounding.
 double grain(const std::vector<Outline>& outlines) {
     double most = 0;
     for (const Outline& outline : outlines)

@@ -34,12 +34,12 @@ using Polygon = std::vector<Point>;
 inline const Polygon triangle = {
     {0, 1 / std::numbers::sqrt3}, {-0.5, -0.5 / std::numbers::sqrt3}, {0.5, -0.5 / std::numbers::sqrt3}};
 
-/// What outlines fill, by the rule of odd numbers or that of windings other than 0. Nothing if they are too
-/// many to be cut where they cross, or take more than the `work` that is left, which they lessen.
+/// The areas that outlines fill, by the even-odd or the nonzero rule. Nothing if too many outlines cross to
+/// be cut, or if they take more than the `work` that is left, which they lessen.
 std::optional<std::vector<Polygon>> filled(const std::vector<Outline>& outlines, bool even_odd,
                                            std::size_t& work);
 
-/// What a pen draws along outlines.
+/// The areas that a pen draws along outlines.
 std::optional<std::vector<Polygon>> stroked(const std::vector<Outline>& outlines, const Stroke& stroke,
                                             std::size_t& work);
 

@@ -21,7 +21,7 @@ constexpr std::size_t most_points = 60'000;
 constexpr std::size_t most_path_turns = 20'000; ///< of all loops
 constexpr int deepest_paths = 30;               ///< of paths within paths
 
-/// What the lines of a path are under: of operations, the map that moves them; of commands, the change.
+/// The context of the lines of a path: for operations, the map that moves them; for commands, the change.
 struct Under {
     Affine place;
     bool moved = false; ///< the place counts: a loop, a transform or a path of operations alone
@@ -358,7 +358,7 @@ class Follower {
         }
     }
 
-    /// By end points, as SVG's (SVG 1.1, appendix F.6.5).
+    /// An arc by end points, as SVG has it (SVG 1.1, appendix F.6.5).
     void arc(const std::vector<double>& n, const PathFlags& flags, Point from, Point to, const Affine& place,
              const Element& element) {
         double rx = n.size() > 2 ? n[2] : 1;

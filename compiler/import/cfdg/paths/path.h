@@ -9,7 +9,7 @@
 
 namespace graftal::cfdg {
 
-/// What a command of a path draws.
+/// The drawing of one command of a path.
 struct PathPart {
     std::vector<Polygon> polygons;
     Change change;

@@ -39,13 +39,13 @@ double number_in(const std::string& text, double otherwise) {
     return number.length > 0 && std::isfinite(number.value) ? number.value : otherwise;
 }
 
-/// Of a program that measures in the plane of x and z unless it is told that it lives in space.
+/// Whether a program measures in the plane of x and z, as it does unless it is told that it lives in space.
 bool is_flat(const Settings& settings) {
     const std::string value = setting(settings, "3d case") + setting(settings, "3D case");
     return value != "on" && value != "yes";
 }
 
-/// Of `chiba`: x y z intensity.
+/// Light sources of `chiba`: x y z intensity.
 std::string sources_of(const Settings& settings) {
     std::string text;
     for (const auto& [name, value] : settings) {

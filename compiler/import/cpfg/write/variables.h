@@ -20,7 +20,7 @@ class CpfgVariables {
     const Values& lets() const { return lets_; }
     const Values& variables() const { return variables_; }
 
-    /// What is left of the model's blocks.
+    /// The model's blocks, less the statements that became variables.
     const std::map<CpfgMoment, CpfgBlock>& blocks() const { return blocks_; }
 
     /// Whether a production may not use the name for a value of its own.

@@ -153,7 +153,7 @@ std::string CpfgWords::default_parameter(const std::string& symbol, Span span) {
     return "0";
 }
 
-/// What tells our turtle what the module tells cpfg's.
+/// The text that tells our turtle what the module tells cpfg's.
 std::string CpfgWords::own_text_of(const CpfgModule& module, Span span, bool other_arity) {
     const std::string& symbol = module.symbol;
     if (symbol[0] == '@' && symbol.size() > 1) return directive(module, span);

@@ -27,10 +27,10 @@ class CpfgWords {
     /// The module of ours that has this name in productions; "" for what has none.
     std::string name_of(const std::string& symbol);
 
-    /// How often the productions of a section are applied to what they give.
+    /// Number of times that the productions of a section are applied, each time to their results.
     int depth_of(CpfgSection section) const;
 
-    // What the strings so far have used:
+    // Features that the strings so far have used:
     const std::set<std::string>& declared() const { return declared_; } ///< names of modules to declare
     const std::set<char>& surfaces() const { return used_surfaces_; }
     bool uses_cut() const { return uses_cut_; }

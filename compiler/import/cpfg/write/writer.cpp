@@ -114,7 +114,7 @@ class SystemWriter {
         return body;
     }
 
-    /// What the view file says of the turtle at the start, as modules.
+    /// The turtle's state at the start by the view file, as modules.
     std::string start_state() const {
         const CpfgView& view = names_.view();
         std::string text = view.has_colour ? fmt::format(";({})", view.colour) : "";

@@ -44,7 +44,7 @@ struct ScenePart {
     std::optional<Rgb> colour;
 };
 
-/// What holds at the end of a path from the root.
+/// The look at the end of a path from the root.
 struct SceneLook {
     PathTint tint;
     Rgb inherited{0.8}; ///< the colour of what is not tinted

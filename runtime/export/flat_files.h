@@ -1,6 +1,6 @@
 #pragma once
 
-// What formats share that list every triangle of every leaf.
+// Sizes and leaves for formats that list every triangle of every leaf.
 
 #include "runtime/export/formats.h"
 #include "runtime/export/output_file.h"
@@ -13,8 +13,8 @@ struct MeshSize {
     std::uint64_t vertices = 0, triangles = 0;
 };
 
-/// Those of each shape, as ShapeMeshes has it where `cornered`, each triangle with its own corners; else at
-/// least so many.
+/// Numbers of a shape's mesh as ShapeMeshes has it where `cornered`: each triangle has its own corners. Else
+/// least numbers.
 MeshSize mesh_size(const SceneShape& shape, bool cornered);
 
 /// Whether some material of the model has a picture, so that triangles may have their own corners.

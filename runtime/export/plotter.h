@@ -14,7 +14,7 @@ using PenStroke = std::vector<Point2>;
 /// farther apart are one. O(n log n) where ends are spread evenly.
 std::vector<PenStroke> pen_path(std::vector<PenStroke> strokes, double tolerance);
 
-/// How far the pen goes while it is lifted, from the first stroke on.
+/// Length of the pen's way while it is lifted, from the first stroke on.
 double lifted_length(const std::vector<PenStroke>& strokes);
 
 } // namespace graftal

@@ -12,7 +12,7 @@ namespace graftal {
 
 struct SheetPicture {
     std::string path;  ///< an sRGB PNG
-    std::string label; ///< what it shows: "seed=12"
+    std::string label; ///< the value that it shows: "seed=12"
 };
 
 /// Puts many pictures on one, row by row from the top left: each reduced by a whole factor until it fits into

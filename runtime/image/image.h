@@ -17,15 +17,15 @@ struct Image {
     bool operator==(const Image&) const = default;
 };
 
-/// How the samples of a picture are to be understood, and how many bits they keep in a PNG. EXR files keep
-/// 32-bit floats and are linear by definition.
+/// The meaning of a picture's samples, and the bits that they keep in a PNG. EXR files keep 32-bit floats
+/// and are linear by definition.
 enum class SampleFormat {
     srgb8,    ///< 8 bit, sRGB encoded: for people
-    srgb16,   ///< the same with 16 bit: for prints, and for what works on the picture
+    srgb16,   ///< 16 bit, sRGB encoded: for prints, and for programs that work on the picture
     linear16, ///< 16 bit, linear light (gamma 1 in the file): for numbers
 };
 
-/// What a PNG stores for 1.
+/// The number that a PNG stores for 1.
 inline int largest_level(SampleFormat format) {
     return format == SampleFormat::srgb8 ? 255 : 65535;
 }

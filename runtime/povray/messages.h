@@ -1,6 +1,6 @@
 #pragma once
 
-// What POV-Ray 3.7 writes to standard error, taken apart: progress counters that end in a carriage return,
+// POV-Ray 3.7's text on standard error, taken apart: progress counters that end in a carriage return,
 // messages wrapped at 80 columns, times, and the words that tell success from failure.
 
 #include <cstdint>

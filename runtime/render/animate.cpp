@@ -69,7 +69,7 @@ class Animation {
     }
 
   private:
-    /// What moves, as it is in a frame.
+    /// The moving values of a frame.
     struct Moment {
         StageOptions compile;
         std::string name; ///< for messages
@@ -208,7 +208,7 @@ class Animation {
         std::rotate(frames.begin() + 2, frames.end() - 1, frames.end());
     }
 
-    /// Of a frame: of samples in the order above by Simpson's rule.
+    /// Mean seconds of a frame: by Simpson's rule where the three are samples in the order above.
     static double mean_of(const std::vector<double>& seconds, bool sampled) {
         const double weight = sampled ? 4 : 1;
         return (seconds[0] + weight * seconds[1] + seconds[2]) / (weight + 2);

@@ -7,7 +7,8 @@ namespace graftal {
 
 namespace {
 
-/// Of the light of what is culled. Other pictures keep POV-Ray's steps, to be equal to its.
+/// Steps of the light of culled parts, in sampled pictures. Other pictures keep POV-Ray's steps, to be equal
+/// to its.
 constexpr int light_steps_of_samples = 128;
 
 /// Whether pixels are estimated, by samples that differ.

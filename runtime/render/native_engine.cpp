@@ -76,7 +76,7 @@ void report_work(const FittedModel& fitted, const Asked& asked, Diagnostics& dia
         warn_of_limit(asked.span, limit, error, diagnostics);
         return;
     }
-    // Who asks for nothing is told before the picture starts (on_start); for noise see report_noise().
+    // Users who ask for nothing learn it before the picture starts (on_start); for noise see report_noise().
     if (!fewer || asked.by_default || wanted.noise_255 > 0) return;
     diagnostics
         .warning(asked.span, fmt::format("{} allow {}, not {:g}", limit.allowed,
@@ -120,7 +120,7 @@ void report_shells(const TraceModel& model, const Asked& asked, Diagnostics& dia
                        diagnostics);
 }
 
-/// What of the picture is drawn.
+/// The part of the picture to draw.
 Tile window_of(const RenderOptions& options, ImageSize size) {
     return options.tile.value_or(whole_of(size));
 }
@@ -175,7 +175,7 @@ class Drawing {
     const NativeReport& report() const { return report_; }
 
   private:
-    /// Samples that are added between two pictures: the first round takes so many seconds of one processor.
+    /// Seconds of one processor for the samples before the first picture, and the growth between pictures.
     static constexpr double seconds_a_round = 2, growth_of_rounds = 3;
 
     bool has_room_for_samples() const {
@@ -372,7 +372,7 @@ bool prepare_model(PictureSession& session, const StageOptions& stages, Prepared
     return model.prepared != nullptr;
 }
 
-/// As trace_model(), by a fit that is known: whoever found it has said what the work has cost.
+/// trace_model() by a known fit: the program that found it has said what the work has cost.
 std::optional<NativeReport> trace_fitted(const PreparedView& prepared, const RenderOptions& options,
                                          const Stopwatch& preparing, const CancelFlag& cancel,
                                          Compilation& compilation, const PictureSink& sink) {
@@ -394,8 +394,8 @@ constinit const Engine native_engine = {
     .name = "native",
     .summary = "graftal's own ray tracer",
     .available = []() -> Status { return {}; },
-    // What it does anyhow is fine: it has no POV-Ray to take --memory, and it goes into every part, as
-    // --flatten wants it.
+    // Two options are fine, since it acts so anyhow: it has no POV-Ray to take --memory, and it goes into
+    // every part, as --flatten wants it.
     .refusal = [](const RenderOptions& options) -> std::string {
         if (options.aovs && !is_exr_name(options.output))
             return "--aovs: only an EXR has room for more channels: name the picture with '-o FILE.exr'";

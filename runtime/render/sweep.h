@@ -25,14 +25,14 @@ void drop_sweep(std::vector<Sweep>& sweeps, const std::string& name);
 
 double swept(double from, double to, double t);
 Vec3 swept(Vec3 from, Vec3 to, double t);
-/// By equal factors in equal times. Requires positive values.
+/// A value on the way by equal factors in equal times. Requires positive values.
 double swept_by_factor(double from, double to, double t);
 /// All whole numbers on the way, each for an equal part of the time.
 std::uint64_t swept_whole(std::uint64_t from, std::uint64_t to, double t);
 /// `from` and all that lie a whole number of steps from it on the way, each for an equal part of the time.
 double swept_by_steps(double from, double to, double step, double t);
 
-/// How time runs.
+/// The way that time runs.
 enum class Ease {
     linear,
     smooth, ///< slow at both ends: t^2 (3 - 2 t)

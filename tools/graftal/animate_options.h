@@ -12,7 +12,7 @@ namespace graftal {
 /// Fills in what `animate` was not told; returns what is wrong with options that are each right, or "".
 std::string complete_animation(Options& options);
 
-/// What the animation is to be like.
+/// Options for the animation itself.
 AnimateOptions animate_options(const Options& options);
 
 /// The version, the engine and all options but those that leave the frames as they are. An option that is

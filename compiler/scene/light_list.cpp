@@ -90,7 +90,7 @@ std::vector<Light> listed_lights(const View& view, const LightListSize& size) {
         list_picture(*view.sky_light, size.dome, view.ground.has_value(), list);
         return list;
     }
-    // What shines from below counts less than the sky, and not at all through a ground.
+    // Light from below counts less than the sky, and not at all through a ground.
     const unsigned from_below = view.ground ? 0 : size.dome / 5;
     list_zone(*view.sky_light, 0, 1, size.dome - from_below, list);
     if (from_below > 0) list_zone(*view.sky_light, -1, 0, from_below, list);

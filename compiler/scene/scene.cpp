@@ -46,8 +46,8 @@ std::vector<Light> solid_lights(const Camera& camera, bool over_ground) {
             {.location = fill, .sun = true, .rgb = {0.27, 0.29, 0.33}, .shadowless = true}};
 }
 
-/// Of a lamp that looks along the way: one level, and one upwards; x is level for a lamp that looks up or
-/// down.
+/// Axes of a lamp that looks along the way: one level, and one upwards; x is level for a lamp that looks up
+/// or down.
 AxesAcross lamp_axes(Vec3 way) {
     const Vec3 direction = glm::normalize(way);
     const Vec3 level = glm::cross(direction, Vec3(0, 1, 0));

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a renderer needs besides geometry: a camera, lights and a sky, all in world space (right-handed,
-// y up). Decided here from the model's scene statements and its bounds; engines only follow.
+// The scene besides geometry: a camera, lights and a sky, all in world space (right-handed, y up). Decided
+// here from the model's scene statements and its bounds; engines only follow.
 
 #include <functional>
 #include <optional>
@@ -39,7 +39,7 @@ struct Camera {
     double pixels_per_unit(Vec3 point, int width_px) const;
 };
 
-/// What a camera with a lens has besides: everything at one depth is sharp.
+/// A camera's lens: everything at one depth is sharp.
 struct Lens {
     double radius = 0; ///< 0: all is sharp
     double depth = 1;  ///< along the camera's direction
@@ -61,7 +61,7 @@ struct Light {
     bool is_area() const { return !sun && !shadowless && a != Vec3(0.0); }
 };
 
-/// How much work goes into what converges.
+/// Work that goes into pictures that converge.
 enum class Quality { draft, normal, best };
 
 template<typename Value> constexpr Value by_quality(Quality quality, Value draft, Value normal, Value best) {
@@ -99,9 +99,9 @@ struct View {
     Film film;
     Quality quality = Quality::normal;
 
-    /// Of the direction of a ray (unit) that meets nothing.
+    /// Light from the direction of a ray (unit) that meets nothing.
     Rgb background(Vec3 direction) const;
-    /// What a material's `ambient` is a share of: the sky's light on paper, or 1 without such a sky.
+    /// Light of which `ambient` is a share: the sky's light on paper, or 1 without a sky of light.
     Rgb ambient_light() const;
     /// Whether light comes from more than points: from discs, or from all directions.
     bool has_soft_light() const;

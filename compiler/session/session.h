@@ -18,14 +18,14 @@
 
 namespace graftal {
 
-/// What a session holds on to.
+/// Values that a session keeps.
 enum class Keep {
     everything, ///< the last value of each stage
-    for_views,  ///< what the next view needs: for animations
+    for_views,  ///< those that the next view needs: for animations
     nothing,    ///< each value only until the next stage has used it: for a single picture
 };
 
-/// How often each stage ran.
+/// Number of runs of each stage.
 struct StageRuns {
     std::uint64_t source = 0;
     std::uint64_t parsed = 0; ///< texts of all files, each by itself

@@ -234,7 +234,7 @@ std::vector<std::vector<double>> approximate_leaf_counts(const Graph& graph, con
                                                          unsigned steps) {
     const std::size_t n = graph.objects.size();
     std::vector<double> row(n, 0.0);
-    std::vector<double> every_level(n, 0.0); // what does not depend on the level
+    std::vector<double> every_level(n, 0.0); // leaves that do not depend on the level
     for (const ObjectId id : ending_first(components)) {
         const Object& object = graph.objects[id];
         bool any = false;

@@ -20,7 +20,7 @@ inline constexpr unsigned max_counted_digits = 1'000'000;
 std::optional<std::string> count_leaves(const Graph& graph, const Components& components,
                                         std::optional<unsigned> steps);
 
-/// The same counts in floating point, for planning: result[s][v] leaves of object v with s levels left, for
+/// Counts of leaves in floating point, for planning: result[s][v] leaves of object v with s levels left, for
 /// s = 0 .. steps (one row for an ending graph); infinity where they overflow. The table ends early at
 /// `max_approximate_counts` numbers: the last row then stands for the deeper ones too.
 inline constexpr std::size_t max_approximate_counts = std::size_t{1} << 24;

@@ -59,7 +59,7 @@ class SupportSearch {
 
     void expand(std::uint32_t parent);
     void push(const Piece& piece);
-    /// Of pieces of one object and direction only the farthest matters: false if it is not this one.
+    /// False if the piece is not the farthest of its object and direction: only that one matters.
     bool merge(const Piece& piece, std::uint32_t number);
     bool nearer(std::uint32_t a, std::uint32_t b) const {
         return arena_[a].upper != arena_[b].upper ? arena_[a].upper < arena_[b].upper : a > b;

@@ -17,7 +17,7 @@ struct Choice {
     double placements = 0;
     double triangles = 0;
     double leaves = 0;
-    double pieces = 0;      ///< that were looked at: what choosing has cost
+    double pieces = 0;      ///< pieces looked at: the cost of the choice
     bool spelt_out = false; ///< nothing becomes a mesh, except for shells
 };
 

@@ -33,7 +33,7 @@ std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
                              const DetailOptions& detail, Diagnostics& diagnostics,
                              const CutOptions& options = {});
 
-/// The same, of a graph that is prepared already. Requires that it was by detail.preparing(), and that
+/// The cut of a prepared graph. Requires that it was prepared by detail.preparing(), and that
 /// refuse_endless() lets it pass. The control follows the pieces that are chosen, unfolded and baked, in all
 /// tries.
 std::optional<Cut> cut_prepared(const Graph& graph, const PreparedCut& prepared, const View& view,

@@ -33,7 +33,7 @@ struct Range {
     std::size_t begin, end;
 };
 
-/// What becomes one union: all placements of one texture and interior, whatever groups they come from.
+/// One union of the scene: all placements of one texture and interior, whatever groups they come from.
 struct Bucket {
     std::uint32_t texture;
     std::optional<Interior> interior;
@@ -252,7 +252,7 @@ bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures)
     return write_objects() && out_.flush();
 }
 
-/// How to use an include file, in comments at its beginning.
+/// Writes comments at the beginning of an include file on how to use it.
 void Emitter::write_usage(const std::vector<std::string>& materials, bool pictures) {
     constexpr std::size_t most_listed = 12;
     out_ << ", and its colours are linear light.\n// In a scene of your own, with assumed_gamma 1";

@@ -68,7 +68,7 @@ class Placing {
     PlacedPieces take() && { return std::move(out_); }
 
   private:
-    /// Of pieces that may lie alike, in leaves; and of what is placed: it waits for memory, as leaves do not.
+    /// Work in leaves: to compare a piece with others, to widen it, and to place it, which waits for memory.
     static constexpr double work_of_comparison = 2, work_of_widening = 3, work_of_placing = 2;
 
     void visit(const Piece& piece) {
@@ -106,7 +106,7 @@ class Placing {
         walk_.drop_children_if([&](const Piece& child) { return !is_new(child); });
     }
 
-    /// Of what stands for the piece if it is cut.
+    /// Share of light of the stand-in for the piece, if it is cut.
     double light_share(const Piece& piece, double detail) const {
         if (!self_shadows_) return piece.light_share;
         return self_shadows_->share_within(piece.light_share, piece.node, detail, projection_.error_px());

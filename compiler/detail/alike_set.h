@@ -73,7 +73,7 @@ class AlikeSet {
     std::size_t size_ = 0;
 };
 
-/// What of a node with so many steps left is alike.
+/// Key of the parts that are alike: those of one node with as many steps left.
 inline std::uint64_t alike_kind(std::uint32_t node, std::uint32_t steps, bool faint) {
     return mixed(std::uint64_t{node} * 2 + faint, steps);
 }

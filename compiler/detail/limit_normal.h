@@ -24,7 +24,7 @@ struct NormalField {
 
     /// Adds the ball of level k >= 1.
     void add(int level, Vec3 centre, double radius);
-    /// The same field in a frame that is only scaled and moved: parent_from_child(x) = scale x + shift.
+    /// The field in a frame that is only scaled and moved: parent_from_child(x) = scale x + shift.
     NormalField seen_from(double scale, Vec3 shift) const;
 };
 

@@ -20,7 +20,7 @@ struct Piece {
     Rgb inherited{0.8};                 ///< the colour that what names no material shows
     std::optional<MaterialId> material; ///< whose finish it shows
     double turns = 1;                   ///< of a primitive: length_in_turns() of its instance
-    bool faint = false;                 ///< it stands for a set without area that was culled
+    bool faint = false;                 ///< stands for a culled set without area
     double light_share = 1; ///< of what shines on it: it stands for what shades itself (self_shadow.h)
 };
 

@@ -23,10 +23,10 @@ class PointSystem {
     using Point = std::array<float, 3>;
     using StateKey = std::pair<NodeId, std::uint32_t>;
 
-    /// What a run on a coarse grid leaves to the next.
+    /// The part of a run on a coarse grid that the next run uses.
     struct Coarse {
         std::shared_ptr<const InsideGrid> inside;
-        std::vector<Point> points; ///< that are not inside
+        std::vector<Point> points; ///< points that are not inside
         std::vector<PointPaint> paints;
     };
     using CoarseStates = std::map<StateKey, Coarse>;
@@ -67,7 +67,7 @@ class PointSystem {
     std::uint64_t work() const { return work_; } ///< of the last run
     std::uint64_t all_work() const { return all_work_ + work_; }
 
-    /// What is inside of the larger states, and their points outside of it.
+    /// The insides of the larger states, and their points outside of these.
     CoarseStates take_coarse();
 
   private:
@@ -91,7 +91,7 @@ class PointSystem {
 
     static PointPaint mean_of(const CutNode& node);
 
-    /// What is drawn where parts end: the terminal, if there is one, by its own material.
+    /// The stand-in where parts end: the terminal, if there is one, by its own material.
     PointPaint ended(const CutNode& node) const;
 
     PointPaint paint_through(const PointPaint& paint, const CutEdge& edge, const State& parent) const;

@@ -37,7 +37,7 @@ struct RunCell {
     double flattest = 1; ///< of all parts the least length along an axis, as a share of the largest
 };
 
-/// The level of RunBounds whose ranges become cells, if there are so many items.
+/// The level of RunBounds whose ranges become cells, if there are enough items.
 inline constexpr std::size_t cell_level = 1;
 
 /// The edge to the primitive of an item, or to the ball at its end.
@@ -63,7 +63,7 @@ template<typename Visit> void for_each_edge(const CutNode& node, bool cut, const
     }
 }
 
-/// How many edges that are.
+/// Number of edges that for_each_edge() visits.
 std::size_t edge_count(const CutNode& node, bool cut);
 
 /// Fills in `node`, which has everything else of its object but edges, ball and proxy, and adds the nodes

@@ -1,7 +1,6 @@
 #pragma once
 
-// Shells: what a part looks like from outside, where so many copies lie in each other that nobody could
-// unfold them.
+// Shells: looks of parts from outside, where so many copies lie in each other that nobody could unfold them.
 
 #include <cstdint>
 #include <optional>

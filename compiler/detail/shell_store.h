@@ -21,11 +21,11 @@ class ShellStore {
     /// `most_bytes`: kept at most, of all shells together.
     explicit ShellStore(std::size_t most_bytes = default_bytes) : most_bytes_(most_bytes) {}
 
-    /// As point_set(), never null. Requires the same graph each time.
+    /// point_set() of the node, never null. Requires the same graph each time.
     std::shared_ptr<const PointSet> points(const CutGraph& cut, NodeId node, std::uint32_t steps,
                                            double detail_per_unit, const PointLimits& limits);
 
-    /// How many shells had to be made.
+    /// Number of shells that had to be made.
     std::uint64_t made() const;
 
   private:

@@ -16,9 +16,8 @@ struct Support {
     Vec3 point{0.0};
 };
 
-/// Best-first search for support functions (Duda 2007; research notes, section 2c): unfolds the pieces that
-/// may reach farthest, as h_v(d) = max over instances of h_u(A^T d) + <t, d>. Keeps its storage between
-/// queries.
+/// Best-first search for support functions (Duda 2007): unfolds the pieces that may reach farthest, as
+/// h_v(d) = max over instances of h_u(A^T d) + <t, d>. Keeps its storage between queries.
 class SupportSearch {
   public:
     /// Both are referred to. Outers must hold true bounds of the masters that a query meets.

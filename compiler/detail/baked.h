@@ -50,7 +50,7 @@ struct BakedPart {
     std::vector<Palette> palettes; ///< by painter
     bool textured = false;         ///< by the material's picture, behind this tint; requires one painter
     PathTint tint;
-    double light_share = 1; ///< of what shines on it (self_shadow.h)
+    double light_share = 1; ///< share of the light on it (self_shadow.h)
 };
 
 struct Baked {

@@ -23,7 +23,7 @@ struct WalkedLeaf {
     bool faint = false;                 ///< of a set without area (least_width.h)
     NormalField normals;                ///< of a proxy, in the representative's frame, if asked for
     bool proxy = false;
-    double light_share = 1; ///< of what shines on it (self_shadow.h)
+    double light_share = 1; ///< share of the light on it (self_shadow.h)
     PathTint tint;          ///< all tints of the walk, by the first painter
     double turns = 1;       ///< length_in_turns() of its instance
 };

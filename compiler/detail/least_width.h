@@ -15,7 +15,7 @@ inline constexpr double least_half_width_px = 0.5;
 /// A map as flat as this is taken for singular: what it places is drawn as if it had no thickness of its own.
 inline constexpr double flattest_leaf = 1e-6;
 
-/// A part whose map is as flat as this is not placed but baked into a neighbour above, and rays are not taken
+/// A part whose map is as flat as this is not placed but baked into a neighbour above. Rays are not taken
 /// into its frame.
 inline constexpr double flattest_placement = 1e-5;
 

@@ -21,7 +21,7 @@ struct Piece {
     std::optional<MaterialId> material; ///< whose finish it shows
     double turns = 1;                   ///< of a primitive: length_in_turns() of its instance
     bool faint = false;                 ///< stands for a culled set without area
-    double light_share = 1; ///< of what shines on it: it stands for what shades itself (self_shadow.h)
+    double light_share = 1; ///< share of the light on it, whose parts would shade themselves (self_shadow.h)
 };
 
 /// The look of what an edge leads to, of anything that has a `tint`, the `inherited` colour of what names no

@@ -98,7 +98,7 @@ bool PointSystem::add_large_parts() {
 PointSystem::CoarseStates PointSystem::take_coarse() {
     CoarseStates found;
     for (State& state : states_) {
-        // Where a finer look takes too much room or work, the last one will do.
+        // Where a finer look takes too much room or work, the last one is taken.
         std::shared_ptr<const InsideGrid> inside =
             find_inside(state.points, state.cell, state.inside.get(), work_, most_work_);
         if (!inside) inside = state.inside;

@@ -35,7 +35,7 @@ class PointSystem {
     struct State {
         StateKey key;
         double stretch = 0; ///< largest product of stretches on a way from the root
-        bool tiny = false;  ///< no larger than a cell: a point will do
+        bool tiny = false;  ///< no larger than a cell: a point is enough
         bool cut = false;
         double cell = 0;
         Vec3 middle{0.0};
@@ -54,7 +54,7 @@ class PointSystem {
     /// Keeps a reference.
     PointSystem(const CutGraph& cut, std::size_t most_points);
 
-    /// The node's grid with such cells, by at most so much work. False if a limit is passed.
+    /// Makes the node's grid of these cells, with `most_work` at most. False if a limit is passed.
     bool run(NodeId root, std::uint32_t steps, double cell, const CoarseStates& coarse,
              std::uint64_t most_work);
 

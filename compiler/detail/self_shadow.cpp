@@ -205,7 +205,7 @@ class Measurer {
     const std::uint64_t most_work_;
     const CutGraph& cut_;
     const View& view_;
-    const Material plain_; ///< of what names none
+    const Material plain_; ///< of parts that name none
     Projection culled_projection_, whole_projection_;
     PartRays culled_, whole_;
     std::vector<Light> lights_, bare_;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Shells: looks of parts from outside, where so many copies lie in each other that nobody could unfold them.
+// Shells: looks of parts from outside, where too many copies lie in each other to unfold them.
 
 #include <cstdint>
 #include <optional>

@@ -63,7 +63,7 @@ class GridSearch {
         const double first = 2 * ball_.radius / first_cells_across;
         double cell = asked;
         if (asked < first) cell = refine(first, asked);
-        if (limited_) { // so do all calls that ask for a finer one than the last
+        if (limited_) { // all calls for a finer cell get this one
             set.finest_asked = 0;
             set.coarsest_asked = std::nextafter(std::min(cell, first), 0.0);
         }

@@ -11,9 +11,9 @@
 
 namespace graftal {
 
-/// The points of shells that were made already, for one graph: who tries several errors asks for the same
-/// grids again and again. What comes out is what point_set() gives, also how much work it was; only the time
-/// is saved. Keeps those that were asked for last. Threads may ask at once.
+/// The points of shells that were made already, for one graph: a try of several errors asks for the same
+/// grids again and again. Results are those of point_set(), with the work that it was; only time is saved.
+/// Keeps those that were asked for last. Threads may ask at once.
 class ShellStore {
   public:
     static constexpr std::size_t default_bytes = 64 << 20;

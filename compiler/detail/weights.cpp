@@ -71,7 +71,7 @@ PieceKind Weights::normalised(PieceKind kind) const {
     if (!node.primitive && detail_step(kind) <= 1e-6) {
         kind.unit_step = PieceKind::tiny;
     } else if (node.primitive || (!node.cullable && !node.unending)) {
-        // The size decides how finely curved surfaces are meshed, and that grows slowly: a few kinds will do.
+        // The size decides how finely curved surfaces are meshed, and that grows slowly: few kinds suffice.
         const int octave = PieceKind::steps_an_octave;
         const double rounded = std::round(static_cast<double>(kind.unit_step) / octave) * octave;
         kind.unit_step = options_.px > 0 ? static_cast<std::int32_t>(rounded) : 0;

@@ -24,7 +24,7 @@ namespace {
 constexpr double max_real_pieces = 300'000;
 constexpr std::size_t max_splits = 200'000;
 /// Each tree of a wood stands at a distance of its own. Where one node has more edges than this, details are
-/// told apart by no more than this part of an octave, lest each tree be a kind to be split by itself.
+/// told apart only by this part of an octave. Else each tree would be a kind to be split by itself.
 constexpr std::size_t many_edges = 4096;
 constexpr int coarse_steps_an_octave = 16;
 

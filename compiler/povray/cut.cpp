@@ -111,8 +111,8 @@ class Cutter {
     /// Growth of the error after a number of steps.
     static double factor_after(int steps) { return std::pow(coarser, steps); }
 
-    /// The cut with an error that many steps coarser than asked for; nothing if it takes too much memory,
-    /// POV-Ray's or our own.
+    /// The cut with an error that is coarser by this number of steps than asked for. Nothing if it takes too
+    /// much memory, POV-Ray's or our own.
     std::optional<Cut> attempt(int coarser_steps) {
         try {
             return attempt_within(coarser_steps);

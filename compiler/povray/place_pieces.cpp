@@ -30,7 +30,7 @@ using PainterKey = std::tuple<std::uint32_t, std::uint32_t, std::array<double, 3
 using RequestKey = std::tuple<NodeId, std::uint32_t, std::int32_t, std::int64_t, std::optional<PainterKey>>;
 
 /// Places whose maps differ by no more than this factor in any direction share a mesh whose parts are drawn
-/// wider than they are, so that these come out as wide to within it.
+/// wider than they are. Widths are right to within this factor.
 constexpr double most_width_ratio = 1.3;
 
 bool nearly_as_wide(const Mat3& a, const Mat3& b) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where POV-Ray's text goes, and what goes with it.
+// POV-Ray's text, where it goes, and the files beside it.
 
 #include <functional>
 #include <memory>

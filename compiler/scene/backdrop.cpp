@@ -70,7 +70,7 @@ struct Shades {
     Rgb zenith, horizon;
 };
 
-/// Light backgrounds look better where both will do.
+/// Light backgrounds look better where both are possible.
 constexpr double preference_for_light = 4;
 
 Shades choose(const std::vector<Rgb>& colours, Shades light, Shades dark) {

@@ -72,7 +72,7 @@ void list_picture(const SkyLight& sky, unsigned count, bool above_only, std::vec
 } // namespace
 
 LightListSize list_size(Quality quality) {
-    // POV-Ray's time grows as their number does. 16 show bands, 32 will do, 64 looks like 512.
+    // POV-Ray's time grows as their number does. 16 show bands, 32 are enough, 64 look like 512.
     return by_quality<LightListSize>(quality, {4, 16, 9}, {8, 40, 32}, {16, 160, 128});
 }
 

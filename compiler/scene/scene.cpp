@@ -24,8 +24,8 @@ Vec3 from_camera(const Camera& camera, Vec3 v) {
     return v.x * camera.right + v.y * camera.up - v.z * camera.direction;
 }
 
-/// A model without depth takes one light at right angles, so that a colour c is drawn as ambient * c +
-/// diffuse * light * c = c. The light is shadowless: a highlight would lie over the whole of it.
+/// A model without depth takes one light at right angles: a colour c is drawn as ambient * c + diffuse *
+/// light * c = c. The light is shadowless: a highlight would lie over the whole of it.
 std::vector<Light> flat_lights(const Camera& camera, int axis) {
     const Material ordinary;
     Vec3 towards(0.0);

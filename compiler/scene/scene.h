@@ -33,9 +33,9 @@ struct Camera {
     double angle_deg = 40; ///< horizontal angle of view; perspective only
     double width = 1;      ///< of the view in scene units; orthographic only
 
-    /// Pixels per scene unit at the point, for a picture `width_px` wide: what a length at right angles to
-    /// the line of sight measures, at most (towards the corners of a perspective picture it is drawn out
-    /// radially). Infinity at or behind the eye of a perspective camera.
+    /// Pixels per scene unit at the point, for a picture `width_px` wide, at most: for a length at right
+    /// angles to the line of sight. (Towards the corners of a perspective picture it is drawn out radially.)
+    /// Infinity at or behind the eye of a perspective camera.
     double pixels_per_unit(Vec3 point, int width_px) const;
 };
 
@@ -68,8 +68,8 @@ template<typename Value> constexpr Value by_quality(Quality quality, Value draft
     return quality == Quality::draft ? draft : quality == Quality::normal ? normal : best;
 }
 
-/// The background in a direction d (unit) runs from `horizon`, where dot(d, axis) <= from, to `zenith`,
-/// where dot(d, axis) >= to, linearly in that product.
+/// The background in a direction d (unit) is `horizon` where dot(d, axis) <= from, and `zenith` where dot(d,
+/// axis) >= to. Between them it is linear in that product.
 struct Sky {
     Rgb zenith{1.0};
     Rgb horizon{1.0}; ///< equal to zenith: a plain background

@@ -21,7 +21,7 @@ namespace graftal {
 /// Values that a session keeps.
 enum class Keep {
     everything, ///< the last value of each stage
-    for_views,  ///< those that the next view needs: for animations
+    for_views,  ///< values for the next view: for animations
     nothing,    ///< each value only until the next stage has used it: for a single picture
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// Deep zoom. A picture far inside the unfolding is made of a graph with a new root: the few subtrees that lie
-// around the focus, placed in coordinates of the picture. They are found on the way down an address
-// (surroundings.h), so the magnification has no limit for similarities, and no coordinate passes through the
+// Deep zoom. A picture far inside the unfolding is made of a graph with a new root: the few subtrees that
+// lie around the focus, placed in coordinates of the picture. They are found on the way down an address
+// (surroundings.h), so the magnification has no limit for similarities. No coordinate passes through the
 // world (Hart and DeFanti's camera in a node's own frame, made a compiler's stage).
 
 #include <cstdint>

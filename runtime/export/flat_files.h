@@ -20,8 +20,8 @@ MeshSize mesh_size(const SceneShape& shape, bool cornered);
 /// Whether some material of the model has a picture, so that triangles may have their own corners.
 bool has_pictures(const ExportedScene& scene);
 
-/// Refuses a file of more bytes than allowed, or of more vertices than its numbers count, with an error that
-/// states how large it would be. `bytes`: of a leaf of each shape.
+/// Refuses a file of more bytes than allowed, or of more vertices than its numbers count. The error states
+/// how large it would be. `bytes`: of a leaf of each shape.
 bool refuse_size(const ExportJob& job, const std::function<std::uint64_t(const SceneShape&)>& bytes);
 
 /// Refuses a model whose coordinates 32-bit floats do not hold, in these units, with an error.

@@ -20,7 +20,7 @@ namespace graftal {
 struct ExportOptions {
     std::string output;
     std::uint64_t most_bytes = std::uint64_t{1} << 30;     ///< of a file
-    std::uint64_t fitted_bytes = std::uint64_t{128} << 20; ///< of one for which graftal chooses the error
+    std::uint64_t fitted_bytes = std::uint64_t{128} << 20; ///< of a file whose error graftal chooses
     std::optional<double> unit_mm;                         ///< millimetres that a unit of the model measures
     std::optional<unsigned> levels;                        ///< instances within instances, at most
     bool instancing = false;

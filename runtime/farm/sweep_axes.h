@@ -32,7 +32,7 @@ std::vector<std::string> values_at(const std::vector<SweepAxis>& axes, std::uint
 /// The values at a point as text: "k=0.5 seed=3".
 std::string label_at(const std::vector<SweepAxis>& axes, std::uint64_t point);
 
-/// Columns of a table that shows all points: the last axis of several has a row for itself, and one alone is
+/// Columns of a table that shows all points. The last axis of several has a row for itself. One alone is
 /// broken into rows so that there are about as many as columns.
 std::uint64_t column_count(const std::vector<SweepAxis>& axes);
 

@@ -20,7 +20,7 @@ struct PovrayJob {
     int height = 0;
     int threads = 0;                ///< 0: as many as POV-Ray likes
     std::optional<int> antialias;   ///< N: adaptive, up to 2^N x 2^N samples a pixel, N in 1..9; nothing: off
-    double antialias_threshold = 0; ///< by so much corners of what is divided differ, as shares of white
+    double antialias_threshold = 0; ///< squares are divided whose corners differ by more, in shares of white
     enum class Format {
         srgb8,    ///< 8-bit PNG
         linear16, ///< 16-bit PNG of linear values, at most 1

@@ -349,7 +349,7 @@ class Animation {
     std::optional<unsigned> steps_; ///< of the model measured last
     Digest model_sources_;
     Digest all_sources_;
-    std::string sources_text_;       ///< of that, once all are known
+    std::string sources_text_;       ///< the text of all_sources_, once all are known
     std::vector<Digest> sources_;    ///< by frame and moment
     std::vector<std::size_t> drawn_; ///< frames, by this run
     AnimationOutcome outcome_;

@@ -125,7 +125,7 @@ std::size_t split(Items items, int depth, std::size_t grain) {
             return whole;
         }
     }
-    return in_grains(items.size() / 2, items.size(), grain); // in one place, or too deep: any halves will do
+    return in_grains(items.size() / 2, items.size(), grain); // in one place, or too deep: take any halves
 }
 
 class TreeBuilder {

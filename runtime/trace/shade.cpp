@@ -207,9 +207,9 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Kn
 }
 
 /// The way on from a surface, backwards along the light: its refracted ray, while the mirrored one waits.
-/// Where light may bounce, or has, it is one of them or one by the cosine, each with the chance that its
-/// light is of the three. False at the end. `scattered`: how much is by the cosine; `sky_later`: with the
-/// sky's light.
+/// Where light may bounce, or has, it is one of them or one by the cosine. Each has the chance of its share
+/// of the light of the three. False at the end. `scattered`: how much is by the cosine; `sky_later`: with
+/// the sky's light.
 bool Shader::goes_on(Path& path, const Point& point, double scattered, bool sky_later, SampleStream& random) {
     const double along = glm::dot(point.to_viewer, point.facet);
     const Material& material = *point.material;

@@ -16,7 +16,7 @@ struct SurfaceHit {
     Vec3 normal{0, 1, 0};               ///< of unit length, to either side
     Rgb rgb{0.8};                       ///< opaque, all tints in front
     const Material* material = nullptr; ///< its finish; its rgb does not count
-    double light_share = 1; ///< of what shines on it, for what shades itself there (self_shadow.h)
+    double light_share = 1;             ///< share of the light on it, less its own shade (self_shadow.h)
     /// Number in the prepared graph of the last node on the way from the root that is no primitive.
     std::uint32_t node = no_node;
     std::uint32_t levels = 0; ///< levels that the way has used up (graph.h, "Levels")

@@ -218,8 +218,8 @@ struct TraceModel {
     std::vector<EvenOffset> even_offsets;
     std::vector<EvenTriangles> even_triangles; ///< of groups
 
-    /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model
-    /// in a plane that is drawn in specks; else before all.
+    /// Distance up to which a hit is near enough, if none can be nearer by more than this share of the half
+    /// width: for a model in a plane that is drawn in specks. Else before all.
     double near_enough(const Ray& ray, double share) const;
     /// Whether rays may ask that: what they meet may then depend on the order of parts.
     bool is_content() const;

@@ -62,9 +62,8 @@ class Traversal final : public Surfaces {
     std::uint64_t visits() const { return visits_; }
     /// Work of these visits and of boxes (RayWork, compiler/detail/work.h).
     std::uint64_t work() const { return RayWork::part * visits_ + boxes_ + more_work_; }
-    /// Rays that went into too many parts. What they had met by then is what they meet; if that is nothing,
-    /// what they had not yet looked into is met as a whole, each part as if it were small enough to be
-    /// culled.
+    /// Rays that went into too many parts. They meet the best hit by then. Without one, a ray meets parts
+    /// that it had not yet looked into as wholes, each as if it were small enough to be culled.
     std::uint64_t given_up() const { return given_up_; }
 
   private:
@@ -102,7 +101,7 @@ class Traversal final : public Surfaces {
         bool items = false;  ///< its entries are items of a run, not edges
         bool faint = false;  ///< they stand for a set without area (least_width.h)
         bool specks = false; ///< they lead to nodes that are cut and faint
-        Vec3 margin{0.0};    ///< by which parts may reach out of their boxes
+        Vec3 margin{0.0};    ///< largest reach of parts out of their boxes
     };
 
     /// A place on the way, and the ray in its frame.
@@ -162,7 +161,7 @@ class Traversal final : public Surfaces {
         Vec3 point{0.0};              ///< of a primitive, likewise
         double turns = 1;             ///< of a primitive (TraceEdge)
         LaneMap world_from_leaf;      ///< unless
-        bool is_upright = false;      ///< that map keeps normals: it only scales evenly and moves
+        bool is_upright = false;      ///< true if it only scales evenly and moves: it keeps normals
         std::uint32_t proxy_node = 0; ///< or no_edge
         const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
         double cell = 0;                                ///< of its shell, in the world

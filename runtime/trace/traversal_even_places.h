@@ -78,7 +78,7 @@ struct Traversal::EvenPlaces {
         child.entry = parent.entry * offset[3];
     }
 
-    /// All but where it lies in the world and whether it is cut.
+    /// Sets all of the child except its place in the world and whether it is cut.
     GRAFTAL_INLINE void step_to_child(const EvenPart& part, std::uint32_t edge, const EvenPlace& parent,
                                       EvenPlace& child) const {
         child.scale = parent.scale * part.stretch;

@@ -16,7 +16,7 @@
 
 namespace graftal {
 
-/// `any`: whatever is met first will do, and only that it is.
+/// `any`: the first hit ends the search, whichever it is, and its details do not count.
 template<Instructions instructions, bool any> struct Traversal::Kernel : Places {
     LaterEntries later{self.later_};
     Traversal::Frame* frames = self.frames_.data(); ///< Traversal's

@@ -1,12 +1,11 @@
 #pragma once
 
 // Eight rays at once: neighbours of a picture mostly look into the same parts. Each ray is taken into frames
-// and meets leaves by the very operations of the way alone, in a lane of its own. What differs is the order
-// in which parts are looked into. That matters only where two hits are all but equally near: such a ray goes
-// again, alone. So a packet gives what its rays give one by one, to the last bit.
-// Here is what packets of all models share: the boxes, the stack, and rays that leave the others. How rays
-// are taken into frames say traversal_packet_even.h and traversal_packet_turned.h. Only traversal_packets.cpp
-// includes these.
+// and meets leaves by the very operations of the way alone, in a lane of its own. Only the order differs in
+// which parts are looked into. That matters only where two hits are all but equally near: such a ray goes
+// again, alone. So a packet gives what its rays give one by one, to the last bit. This file has the share of
+// packets of all models: the boxes, the stack, and rays that leave the others. The ways of rays into frames
+// are in traversal_packet_even.h and traversal_packet_turned.h. Only traversal_packets.cpp includes these.
 
 #include <bit>
 #include <cstring>
@@ -269,8 +268,8 @@ struct Traversal::PacketWalk : PlacesOf {
         return none ? Next::end : Next::on;
     }
 
-    /// Those of eight boxes that a ray of the packet may meet, by the extremes of all rays. Sums and
-    /// products are rounded in order, so that none is left out.
+    /// Bits of the boxes that a ray of the packet may meet, by the extremes of all rays. Sums and products
+    /// are rounded in order, so that none is left out.
     GRAFTAL_INLINE std::uint32_t boxes_near(const BoxNode& node, const Frame& frame, const Float8& most,
                                             std::uint32_t mask) const {
         Float8 enters = spread<instructions>(frame.first_least);

@@ -31,7 +31,7 @@ struct Traversal::Places {
             point_through(parent.world_from_node, edge.parent_from_child.translation);
     }
 
-    /// Goes to the child of an edge; false if it is nothing. Sets all but the child's flatness.
+    /// Goes to the child of an edge; false if it is nothing. Sets all of the child except its flatness.
     GRAFTAL_INLINE bool go_to_child(const TraceEdge& edge, const TraceNode& node, std::uint32_t number,
                                     const Place& parent, Place& child) const {
         place_child(parent, edge, child.world_from_node);

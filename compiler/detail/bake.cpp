@@ -45,7 +45,7 @@ struct KeptLeaf {
 struct PartKey {
     std::int64_t material = -1; ///< none: -1
     bool textured = false;
-    std::array<double, 4> tint{}; ///< of what has a texture
+    std::array<double, 4> tint{}; ///< of textured leaves
     double light_share = 1;
     auto operator<=>(const PartKey&) const = default;
 };

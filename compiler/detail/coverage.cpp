@@ -27,7 +27,7 @@ constexpr std::size_t fine_factor = 12; ///< times as many parts, to see the end
 constexpr int most_rounds = 10;
 /// Difference of growth_of_area() from 1 that counts as none.
 constexpr double same_area = 1e-6;
-/// Least share of a full stand-in in the shadow of the ellipsoid in the node's box.
+/// A stand-in is full if its shadow has at least this share of that of the ellipsoid in the node's box.
 constexpr double full_share = 0.5;
 
 /// Fits the groups of congruent nodes, masters first.
@@ -306,7 +306,7 @@ class Fitter {
             }
     }
 
-    /// Gives the weights seen of a root's edges to the edges that they are paired with.
+    /// Gives the visible weights of a root's edges to the edges that they are paired with.
     void weigh_edges() {
         for (const std::uint32_t p : congruence_.order) {
             const NodePair& pair = symmetry_.pairs[p];

@@ -58,7 +58,7 @@ struct CutNode {
     Affine node_from_proxy; ///< places the unit sphere: the ellipsoid in the node's box, until fit_proxies()
     MeanColour mean;
     std::optional<MeanColour> lit;    ///< its proxy's colour in place of `mean`: see set_lit_colours()
-    std::optional<MaterialId> finish; ///< of what is seen most in its limit; none: that it inherits
+    std::optional<MaterialId> finish; ///< the most visible one in its limit; none: that it inherits
 };
 
 /// A graph after the passes for detail, with what unfolding it asks for at every edge.

@@ -288,7 +288,7 @@ bool Emitter::write_include(std::vector<PaletteImage>& pictures) {
         texture_texts_.push_back(
             several ? fmt::format("#ifndef ({}_bare) texture {{ {} }} #end", identifier_, name)
                     : fmt::format("texture {{ {} }}", name));
-    const std::string declarations = textures_.declarations(pictures); // of what the textures are made of
+    const std::string declarations = textures_.declarations(pictures); // of the textures' parts
     write_header();
     write_usage(textures.materials, !pictures.empty());
     out_ << declarations << textures.declarations;

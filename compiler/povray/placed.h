@@ -43,7 +43,7 @@ struct TexturedPrimitive {
 };
 
 struct PlacedPieces {
-    PrimitiveNumbers primitives; ///< of what is placed
+    PrimitiveNumbers primitives; ///< of the placed parts
     std::deque<Placed> things;   ///< no room for twice as many while it grows
     PlacedRuns runs;
     std::vector<BakeRequest> requests;

@@ -14,7 +14,7 @@ struct MeshSize {
 };
 
 /// Numbers of a shape's mesh as ShapeMeshes has it where `cornered`: each triangle has its own corners. Else
-/// least numbers.
+/// the numbers are lower bounds.
 MeshSize mesh_size(const SceneShape& shape, bool cornered);
 
 /// Whether some material of the model has a picture, so that triangles may have their own corners.

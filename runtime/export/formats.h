@@ -16,7 +16,7 @@
 
 namespace graftal {
 
-/// Wishes of the user besides the model and its view.
+/// Options of an export besides the model and its view.
 struct ExportOptions {
     std::string output;
     std::uint64_t most_bytes = std::uint64_t{1} << 30;     ///< of a file

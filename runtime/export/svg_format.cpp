@@ -188,7 +188,7 @@ class SvgWriter {
         close();
     }
 
-    /// Attributes of a group of shapes: its colour, and how much of what is behind it covers.
+    /// Attributes of a group of shapes: its colour and its opacity.
     std::string look_of(const SceneLook& look) const {
         std::string text = fmt::format("color=\"{}\"", svg_colour(look.colour()));
         const double clear = look.material ? scene_.materials[*look.material].transparency : 0;

@@ -102,7 +102,7 @@ struct Drawn {
     double seconds = 0; ///< of drawing
 };
 
-/// Wishes for a file that another program reads. Each of the first five is for some formats only.
+/// Settings of a file for another program. Each of the first five is for some formats only.
 struct ExportSettings {
     std::optional<double> unit_mm;    ///< millimetres of a unit of the model; else as the format has it
     std::optional<unsigned> levels;   ///< instances within instances, at most; at least 2
@@ -138,7 +138,7 @@ class GRAFTAL_API Model {
     Model& operator=(Model&&) noexcept;
     ~Model();
 
-    // Wishes. They run nothing.
+    // Settings. They run nothing.
 
     void edit(std::string text);                     ///< in place of the file's text
     void reload();                                   ///< reads the file, and those that it names, again

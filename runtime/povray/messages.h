@@ -40,7 +40,7 @@ struct PovrayLog {
     static constexpr std::size_t max_messages = 100;
 
     std::vector<PovrayMessage> messages;
-    std::vector<std::string> last_lines; ///< of what was printed, for failures without a message
+    std::vector<std::string> last_lines; ///< of the output, for failures without a message
     bool finished = false;               ///< "POV-Ray finished" was printed
     bool illegal_matrix = false;         ///< a degenerate matrix was replaced: the picture is wrong
     bool no_objects = false;

@@ -73,7 +73,7 @@ struct AnimateOptions {
 /// The result of an animation.
 struct AnimationOutcome {
     bool done = false;
-    Compilation compilation; ///< of what went wrong; if done: the times of all frames together
+    Compilation compilation; ///< of the fault; if done: the times of all frames together
     std::string frame; ///< if not done: the frame that it went wrong at, e.g. "frame 17 of 60 (--steps 4)"
     std::size_t drawn = 0;     ///< frames
     std::size_t found = 0;     ///< frames that an earlier run had drawn

@@ -17,8 +17,8 @@ namespace graftal {
 namespace {
 
 /// Rays of the first piece of a look, and the most rays of a piece for each ray before it. The last piece is
-/// close, with a ray for each 16 pixels. A hundredth of a picture may take all of the work; a still smaller
-/// share is seldom met.
+/// close, with a ray for each `pixels_a_ray` pixels. A hundredth of a picture may take all of the work; a
+/// still smaller share is seldom met.
 constexpr std::uint64_t first_piece = 16, growth_of_pieces = 4, pixels_a_ray = 16, least_last = 256;
 /// Rays that are traced before a picture is drawn by what they took.
 constexpr std::uint64_t rays_before_draft = 64;

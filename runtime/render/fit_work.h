@@ -17,7 +17,7 @@ struct FittedModel {
     double whole_seconds = 0;   ///< of the picture as it was asked for
     double sample_seconds = 0;  ///< of one sample for each pixel
     double tried_seconds = 0;   ///< of the work, for trying
-    double error_px = 0;        ///< of what is culled now
+    double error_px = 0;        ///< of the parts that are culled now
     bool rays_cut = false;      ///< each ray goes into fewer parts than it wants
     bool out_of_memory = false; ///< the error is not for the work alone
 };

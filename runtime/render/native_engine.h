@@ -20,7 +20,7 @@ struct NativeReport {
     double first_picture_seconds = 0; ///< from the beginning of the call until a picture was there
     double samples_a_pixel = 0;       ///< of the picture that is there, all over
     bool fewer_where_calm = false;    ///< a pixel has fewer samples where they agree
-    double error_px = 0;              ///< of what is culled; 0 where nothing is
+    double error_px = 0;              ///< of culled parts; 0 where none are
     bool finished = false;            ///< the picture is as it was asked for
     double finer_samples_a_pixel = 0; ///< if an interruption left it: of the part that is finer
     double finer_share = 0;           ///< of its area

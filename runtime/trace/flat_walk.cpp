@@ -1,5 +1,5 @@
-// Meeting of parts that singular maps crush, or nearly. No ray can be taken into the frame of a set without
-// thickness. So parts are placed in the world, one by one, and met there, as wide as they are drawn.
+// Intersections with parts that singular maps crush, or nearly. No ray can be taken into the frame of a set
+// without thickness. So parts are placed in the world, one by one, and met there, as wide as they are drawn.
 
 #include <algorithm>
 #include <cmath>

@@ -70,8 +70,8 @@ struct LaneMap {
     }
 };
 
-/// Spreads a number by an operation with a scalar, which the compiler knows how to do: lanes of a list it
-/// inserts one by one.
+/// Spreads a number by an operation with a scalar, which compilers do at once: they insert a list of lanes
+/// one by one.
 GRAFTAL_INLINE Double4 splat(double x) {
     return x - Double4{};
 }

@@ -54,7 +54,7 @@ struct alignas(64) TraceEdge {
     bool to_primitive = false; ///< leads to one
     LaneMap parent_from_child;
     LaneMap child_from_parent;
-    Box box;          ///< of what the child draws, in the parent's frame
+    Box box;          ///< holds the child's drawing, in the parent's frame
     double turns = 1; ///< of a primitive: length_in_turns() of the graph's instance
 
     void find_upright();
@@ -122,7 +122,7 @@ struct alignas(64) TraceNode {
     bool faint = false;                ///< of no area (CutNode::shadowless)
     bool widens = false;               ///< CutNode::widens
     std::uint32_t tree = no_tree;      ///< of its edges, or its items of the run
-    std::uint32_t stop_tree = no_tree; ///< of what is drawn where it is cut; none: its proxy
+    std::uint32_t stop_tree = no_tree; ///< tree of its drawing where it is cut; none: its proxy
     std::uint32_t first_edge = 0;      ///< of its edges, which follow each other
     std::uint32_t edge_count = 0;
     std::uint32_t endless_count = 0;   ///< of an unbounded union: the first of its edges, which `tree` lacks

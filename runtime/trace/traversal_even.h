@@ -1,8 +1,8 @@
 #pragma once
 
-// Ways of rays through models whose parts are only scaled evenly and moved, and drawn no wider than they
-// are: the general way (traversal_kernel.h) without what such models never need. The ray has one direction
-// in all frames; a frame's place is a scale and an offset. Only traversal.cpp includes it.
+// Traversal of models whose parts are only scaled evenly and moved, and drawn no wider than they are: the
+// general way (traversal_kernel.h) without what such models never need. The ray has one direction in all
+// frames; a frame's place is a scale and an offset. Only traversal.cpp includes it.
 
 #include "compiler/primitives/passage.h"
 #include "runtime/trace/later_entries.h"

@@ -395,7 +395,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
     void meet_body(RunShape shape, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
                    const Ray& ray, const Entry& entry);
 
-    // Meeting of parts (traversal_leaves.h):
+    // Intersections (traversal_leaves.h):
     void meet_primitive(const Primitive& primitive, const Frame& parent, const LocalRay& local,
                         const Entry& entry);
     void meet_shell(const TraceMesh& mesh, std::uint32_t frame_number);

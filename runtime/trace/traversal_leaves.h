@@ -1,7 +1,7 @@
 #pragma once
 
-// Meeting of primitives, shells, proxies and stand-ins for sets without area; only traversal.cpp includes
-// this.
+// Intersections with primitives, shells, proxies and stand-ins for sets without area; only traversal.cpp
+// includes this.
 
 #include "runtime/trace/traversal_kernel.h"
 

@@ -3,8 +3,8 @@
 // Eight rays at once: neighbours of a picture mostly look into the same parts. Each ray is taken into frames
 // and meets leaves by the very operations of the way alone, in a lane of its own. Only the order differs in
 // which parts are looked into. That matters only where two hits are all but equally near: such a ray goes
-// again, alone. So a packet gives what its rays give one by one, to the last bit. This file has the share of
-// packets of all models: the boxes, the stack, and rays that leave the others. The ways of rays into frames
+// again, alone. So a packet gives what its rays give one by one, to the last bit. This file has the common
+// part of all packets: the boxes, the stack, and rays that leave the others. The ways of rays into frames
 // are in traversal_packet_even.h and traversal_packet_turned.h. Only traversal_packets.cpp includes these.
 
 #include <bit>
@@ -392,7 +392,7 @@ struct Traversal::PacketWalk : PlacesOf {
             room.ways.push_back(frames[i].edge);
     }
 
-    // Meeting of leaves (traversal_packet_leaves.h):
+    // Intersections (traversal_packet_leaves.h):
     struct Near {
         Double4 origin[3], along[3];
         Double4 base, unit, speed, least, most;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Meeting of primitives by a packet of rays, four rays at a time. Only traversal_packets.cpp includes this.
+// Intersections of a packet with primitives, four rays at a time. Only traversal_packets.cpp includes this.
 
 #include "compiler/primitives/passage.h"
 #include "runtime/trace/traversal_packet.h"

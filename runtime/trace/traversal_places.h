@@ -1,7 +1,7 @@
 #pragma once
 
-// Choice of the parts of a model that rays look into, and the parts' places in the world: it does not depend
-// on the rays. Only traversal.cpp and traversal_packets.cpp include this.
+// Choice of the parts of a model that rays look into, and the parts' places in the world. Neither depends on
+// the rays. Only traversal.cpp and traversal_packets.cpp include this.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Meeting of the items of runs by the traversal; only traversal.cpp includes this.
+// Intersections with the items of runs; only traversal.cpp includes this.
 
 #include "compiler/primitives/texture_space.h"
 #include "runtime/trace/run_bodies.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-// Ways of rays by specks, which stand for small parts of sets without area. Specks are drawn wider than they
+// Traversal past specks, which stand for small parts of sets without area. Specks are drawn wider than they
 // are, so that a ray comes near many and meets few. Only traversal.cpp includes this.
 
 #include "runtime/trace/specks.h"

@@ -45,7 +45,7 @@ struct DrawnLeaf {
     double half_width = 0; ///< half_width_needed()
 };
 
-/// Both of these at once: facts of the map that both need are found out once.
+/// widened() by half_width_needed(): facts of the map that both need are found once.
 DrawnLeaf drawn_leaf(const Primitive& primitive, const Affine& place, bool faint, double half_width);
 
 } // namespace graftal

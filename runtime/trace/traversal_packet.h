@@ -137,7 +137,7 @@ struct Traversal::PacketWalk : PlacesOf {
         return frame.most = floats_of(most) + 2e-6f;
     }
 
-    /// A side of eight boxes, as numbers: GCC spreads one of these faster than a lane of a vector.
+    /// A side of eight boxes, as numbers: one of these is spread faster than a lane of a vector.
     static GRAFTAL_INLINE const float* side_of(const BoxNode& node, std::size_t side, int axis) {
         return reinterpret_cast<const float*>(&node.side[side][axis]);
     }

@@ -121,7 +121,7 @@ class Session {
         PrepareOptions options;
         bool operator==(const PrepareKey&) const = default;
     };
-    /// What the work gives; null, with a failed status, if it was cancelled, or after an error if it would
+    /// Value of the work. Null, with a failed status, if it was cancelled; null after an error if it would
     /// take more than is allowed.
     template<typename Value, typename Work>
     std::shared_ptr<const Value> unless_ended(Compilation& compilation, const Work& work);
@@ -154,7 +154,7 @@ class Session {
     ParsedFiles parsed_;
     Memo<LowerKey, LoweredModel> lowered_;
     SourceMap sources_;                       ///< of the last lowering
-    std::map<std::string, FileStamp> meshes_; ///< that it read, too
+    std::map<std::string, FileStamp> meshes_; ///< meshes that the last lowering read
     bool reads_steps_ = true;                 ///< the last lowering: its value depends on steps
     Memo<AnalyseKey, AnalysedModel> analysed_;
     Memo<ViewKey, ViewedModel> viewed_;

@@ -33,13 +33,13 @@ inline int largest_level(SampleFormat format) {
 /// A linear value as sRGB encodes it (IEC 61966-2-1); clamped to [0, 1], 0 for NaN.
 float srgb_encoded(float linear);
 
-/// What a PNG stores for a sample whose largest level is given: largest * sample, rounded, halves up; clamped, 0 for
-/// NaN. Adding 0.5 would round a float just below a half up as well.
+/// The level of a sample in a PNG: largest * sample, rounded, halves up; clamped, 0 for NaN. Adding 0.5
+/// would round a float just below a half up as well.
 std::uint32_t level_of(float sample, int largest);
 std::uint8_t level8_of(float sample);
 
-/// How far two pictures are apart. Over the samples a_i, b_i, i = 1..N, of all pixels and channels
-/// (a grey picture counts as RGB, a missing alpha as 1), with d_i = |a_i - b_i|:
+/// Distances of two pictures. The samples a_i, b_i, i = 1..N, are those of all pixels and channels
+/// (a grey picture counts as RGB, a missing alpha as 1). With d_i = |a_i - b_i|:
 ///   max = max d_i,   mean = (1/N) sum d_i,   rms = sqrt((1/N) sum d_i^2).
 /// p99 is the least number that 99 of 100 pixels do not exceed, each by its largest d_i.
 /// Samples that are both NaN, or equal infinities, agree; any other pair with one of them is infinitely

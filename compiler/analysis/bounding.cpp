@@ -26,7 +26,7 @@ namespace {
 constexpr double exact = 1e-12;
 constexpr std::array<double, 7> passes_of_cycle = {0.3, 0.1, 0.03, 0.01, 0.003, 0.001, exact};
 constexpr std::uint64_t faces = 6;
-/// After so many the control is asked: some milliseconds.
+/// Pieces after which the control is asked: some milliseconds.
 constexpr std::uint64_t pieces_a_look = 10'000;
 
 /// Pieces to spend on support functions, dealt out so that all objects get some and what one leaves over

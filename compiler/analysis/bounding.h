@@ -38,8 +38,8 @@ std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& co
                                         const Contraction& contraction, const Control& control = no_control(),
                                         std::uint64_t* pieces = nullptr);
 
-/// The boxes of bound_objects(), with the same requirements. Sooner: of an object that no other instances,
-/// no ball is looked for. By about `most` pieces, whose number `pieces` gets.
+/// The boxes of bound_objects(), with the same requirements. Faster: it looks for no ball of an object that
+/// no other instances. Takes about `most` pieces; `pieces` gets their number.
 std::vector<Box> bound_boxes(const Graph& graph, const Components& components, const Contraction& contraction,
                              std::uint64_t most, std::uint64_t& pieces);
 

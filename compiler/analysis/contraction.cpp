@@ -34,7 +34,7 @@ double rounding_room(const ContractionCertificate& certificate) {
     return 1e-12 + 1e-14 * (largest_log + condition * condition + certificate.depth);
 }
 
-/// What is known of one component: an interval, the walk behind its lower end, the reasons for its upper end.
+/// Knowledge of one component: an interval, the walk behind its lower end, the reasons for its upper end.
 struct Findings {
     double lower = 0;
     double upper = 0;

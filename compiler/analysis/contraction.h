@@ -18,9 +18,9 @@ struct GraphStep {
 
 enum class Verdict { acyclic, proved, refuted, undecided };
 
-/// A checkable reason why every cycle contracts. Each object of a cycle has a metric |L x| p. Along every
-/// path of `depth` instances that stays in one component there is a prefix (of one instance or more, root
-/// side first, from v to u) whose linear part M shrinks lengths by `rate` an instance at least:
+/// A checkable reason why every cycle contracts. Each object of a cycle has a metric |L x| p. Take any path
+/// of `depth` instances that stays in one component. It has a prefix of one instance or more, root side
+/// first, from v to u. Its linear part M shrinks lengths by `rate` an instance at least:
 ///     |L_v M L_u^-1|_2 p_u <= rate^length p_v.
 /// Depth 1 is the usual case; there identity metrics say that the instances contract as they stand, up to a
 /// choice of unit for each object.
@@ -31,8 +31,8 @@ struct ContractionCertificate {
     int depth = 1;
 };
 
-/// Whether the unfolding converges. `lower` and `upper` enclose the joint spectral radius of the
-/// component that contracts least (constrained to its paths), the factor a level contributes in the long run.
+/// Whether the unfolding converges. `lower` and `upper` enclose the joint spectral radius of the component
+/// that contracts least (constrained to its paths). It is the factor of a level in the long run.
 struct Contraction {
     Verdict verdict = Verdict::acyclic;
     double lower = 0;
@@ -45,8 +45,8 @@ struct Contraction {
 };
 
 /// Decides by the cycle mean of norms, one linear solve for metrics, then Gripenberg's branch and bound over
-/// paths (research notes, Karp 1978, Gripenberg 1996). Effort is bounded: what it cannot settle it calls
-/// undecided, with the interval reached. A refutation names a cycle whose spectral radius is at least 1.
+/// paths (Karp 1978, Gripenberg 1996). Effort is bounded: what it cannot settle it calls undecided, with the
+/// interval reached. A refutation names a cycle whose spectral radius is at least 1.
 Contraction decide_contraction(const Graph& graph, const Components& components,
                                const Control& control = no_control());
 

@@ -13,8 +13,8 @@ namespace graftal {
 
 /// The primitives that an unfolding to `steps` levels draws (see graph.h, "Levels"), exact, in decimal; a
 /// fitted proxy counts as one. Ending graphs need no steps. Nothing where an unending graph has no steps or
-/// more than `max_counted_steps`, and where the number has over `max_counted_digits` digits or costs over
-/// some seconds to add up: O(graph * steps * digits), equal objects counted once.
+/// more than `max_counted_steps`. Nothing where the number has over `max_counted_digits` digits or costs
+/// over some seconds to add up: O(graph * steps * digits), equal objects counted once.
 inline constexpr unsigned max_counted_steps = 100'000;
 inline constexpr unsigned max_counted_digits = 1'000'000;
 std::optional<std::string> count_leaves(const Graph& graph, const Components& components,

@@ -60,7 +60,7 @@ bool radius_below_one(const RatioGraph& graph, double s) {
     return true;
 }
 
-/// The same for large sparse matrices by iteration, with Collatz's bounds. Nothing if these stay apart.
+/// radius_below_one() for large sparse matrices, by iteration: nothing if Collatz's bounds stay apart.
 std::optional<bool> radius_below_one_sparse(const RatioGraph& graph, double s) {
     std::vector<double> factor;
     for (const Ratio& edge : graph.edges)

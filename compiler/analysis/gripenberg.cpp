@@ -12,7 +12,7 @@ namespace {
 constexpr int deepest = 1000;
 constexpr std::uint32_t no_parent = UINT32_MAX;
 
-/// How much better than the best walk another must be to count as better and not as rounding.
+/// Least gain of a walk over the best one to count as better and not as rounding.
 constexpr double better = 1e-10;
 
 struct Path {
@@ -115,7 +115,7 @@ class Search {
         }
     }
 
-    /// By the product at hand; quickly false by |M^4|^(1/4), which is at least the spectral radius.
+    /// Tests the product at hand; quickly false by |M^4|^(1/4), which is at least the spectral radius.
     bool may_grow_faster(const Path& path, double length) const {
         const double least = length * (found_.log_lower + better) - path.log_scale;
         const Mat3 square = path.product * path.product;
@@ -144,7 +144,7 @@ class Search {
     const CycleGraph& cycle_;
     const PathSearchLimits& limits_;
     std::vector<Mat3> seen_;           // by edge
-    std::vector<std::uint32_t> edges_; // those followed, by object
+    std::vector<std::uint32_t> edges_; // followed ones, by object
     std::vector<std::uint32_t> first_; // edges of v: edges_[first_[v]] .. edges_[first_[v + 1] - 1]
     struct Node {
         std::uint32_t parent;

@@ -8,10 +8,10 @@
 
 namespace graftal {
 
-/// What a search over the paths of a component found.
+/// Findings of a search over the paths of a component.
 struct PathSearch {
     double log_lower = 0;            ///< of the closed walk that grows fastest, per instance
-    std::vector<std::uint32_t> walk; ///< that walk, if better than the one that was known; edge numbers
+    std::vector<std::uint32_t> walk; ///< if better than the one that was known; edge numbers
     double log_rate = 0;             ///< every path of `depth` instances has a prefix that shrinks as much
     int depth = 0;
     std::uint64_t products = 0; ///< effort taken

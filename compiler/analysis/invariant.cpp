@@ -262,7 +262,7 @@ class Invariant {
         return moved;
     }
 
-    /// How far the instances reach along an axis, or against it.
+    /// Reach of the instances along an axis, or against it.
     double face(ObjectId id, int axis, double sign) const {
         constexpr double rounding = 2e-15; // of the terms of a sum, for a dozen operations
         double most = -INFINITY;

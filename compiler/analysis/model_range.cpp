@@ -13,8 +13,8 @@ namespace graftal {
 
 namespace {
 
-/// How far an object reaches, from its origin and from its middle alike; of what gathers at one point, how
-/// far its parts are moved on the way there.
+/// Reach of an object, from its origin and from its middle alike. For an object that gathers at one point,
+/// the farthest move of its parts on the way there.
 double reach(const Object& object, const ObjectBounds& bounds) {
     double farthest = bounds.ball.empty() ? 0 : glm::length(bounds.ball.centre) + bounds.ball.radius;
     for (const Instance& instance : object.instances)

@@ -9,8 +9,8 @@
 
 namespace graftal {
 
-/// A terminal stands in for its object where that is too small to see: it reaches at most so many times as
-/// far.
+/// Largest reach of a terminal, in reaches of its object. It stands in for an object that is too small to
+/// see.
 inline constexpr double farthest_terminal = 1000;
 
 /// Reports, and gives false, where what the graph composes leaves the range of numbers

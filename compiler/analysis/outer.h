@@ -9,8 +9,8 @@
 
 namespace graftal {
 
-/// What is known of an object's limit set while bounds are computed: it lies in an ellipsoid and in a box,
-/// and holds some points (to rounding).
+/// Bounds of an object's limit set while they are computed: it lies in an ellipsoid and in a box, and holds
+/// some points (to rounding).
 struct Outer {
     Vec3 centre{0.0};
     Mat3 reach{

@@ -13,7 +13,7 @@ namespace graftal {
 
 namespace {
 
-/// Of the coordinates, upwards: what sums of a few numbers may be off by.
+/// Share of the coordinates, upwards: the rounding of sums of a few numbers.
 constexpr double rounding = 4e-15;
 
 /// The radius at the far end.
@@ -45,7 +45,7 @@ Vec3 support_point_of(const RunItem& item, Vec3 direction) {
     return glm::dot(near_point, direction) > glm::dot(far_point, direction) ? near_point : far_point;
 }
 
-/// The same for the distance from `centre`.
+/// The point of an item that is farthest from `centre`.
 Vec3 farthest_point_of(const RunItem& item, Vec3 centre) {
     if (item.shape.is_sphere()) return support_point_of(item, item.base - centre);
     const double axis_length = glm::length(item.axis);
@@ -137,7 +137,7 @@ void RunBounds::search(const UpperOf& upper_of, const OfItem& of_item) const {
         const std::size_t first = range.index * ranges_a_range, before = open.size();
         for (std::size_t i = first; i < std::min(first + ranges_a_range, below.size()); ++i)
             open.push_back({upper_of(below[i]), range.level - 1, i});
-        // What reaches farthest comes first.
+        // Ranges that reach farthest come first.
         std::sort(open.begin() + static_cast<std::ptrdiff_t>(before), open.end(),
                   [](const Range& a, const Range& b) { return a.upper < b.upper; });
     }

@@ -30,7 +30,7 @@ class RunBounds {
     std::size_t level_count() const { return levels_.size(); }
     /// The ranges of a level, the lowest first; the last level has one.
     const std::vector<Box>& boxes(std::size_t level) const { return levels_[level]; }
-    /// How many items a range of the level has, except its last.
+    /// Number of items in a range of the level, except its last.
     static std::size_t range_size(std::size_t level);
 
     /// A point of the run that is farthest along `direction`; about O(log items).

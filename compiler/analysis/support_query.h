@@ -16,9 +16,8 @@ struct Support {
     Vec3 point{0.0};
 };
 
-/// Best-first search for support functions (Duda 2007; research notes, section 2c): unfolds the pieces that
-/// may reach farthest, as h_v(d) = max over instances of h_u(A^T d) + <t, d>. Keeps its storage between
-/// queries.
+/// Best-first search for support functions (Duda 2007): unfolds the pieces that may reach farthest, as
+/// h_v(d) = max over instances of h_u(A^T d) + <t, d>. Keeps its storage between queries.
 class SupportSearch {
   public:
     /// Both are referred to. Outers must hold true bounds of the masters that a query meets.
@@ -59,7 +58,7 @@ class SupportSearch {
 
     void expand(std::uint32_t parent);
     void push(const Piece& piece);
-    /// Of pieces of one object and direction only the farthest matters: false if it is not this one.
+    /// False if the piece is not the farthest of its object and direction: only that one matters.
     bool merge(const Piece& piece, std::uint32_t number);
     bool nearer(std::uint32_t a, std::uint32_t b) const {
         return arena_[a].upper != arena_[b].upper ? arena_[a].upper < arena_[b].upper : a > b;

@@ -18,7 +18,7 @@ namespace {
 /// Pieces that hold the ball up are split while their radius is over this part of its.
 constexpr double small_piece = 0.02;
 
-/// What a ball stands for, and is split into.
+/// The part that a ball holds, and is split into.
 struct Origin {
     enum class Kind { object, primitive, disc, point };
     Kind kind = Kind::point;

@@ -7,10 +7,9 @@
 
 namespace graftal {
 
-/// A small ball about an object's limit set: the smallest one about the balls of its pieces, of which those
-/// that hold it up are split until they are small against it (research notes, section 2e), or about
-/// `most_pieces` were made. A true bound if the outers of the masters are. Requires an object that is no
-/// primitive and not empty.
+/// A small ball about an object's limit set: the smallest one about the balls of its pieces. Pieces that
+/// hold it up are split until they are small against it, or about `most_pieces` were made. A true bound if
+/// the outers of the masters are. Requires an object that is no primitive and not empty.
 Ball tight_ball(const Graph& graph, const Outers& outers, ObjectId id, std::size_t most_pieces);
 
 } // namespace graftal

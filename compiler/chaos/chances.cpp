@@ -148,12 +148,12 @@ class ChanceFinder {
                            [](const Instance& instance) { return instance.chance > 0; });
     }
 
-    /// What an instance places, in units of area. Requires that its master is done.
+    /// Size of the part that an instance places, in units of area. Requires that its master is done.
     double size_of(const Instance& instance) const {
         const Object& master = graph_.objects[instance.master];
         if (!master.primitive) {
             double size = area_factor(instance.parent_from_child.linear);
-            // What is flattened for good has an area all the same.
+            // A part that is flattened for good has an area all the same.
             const double stretch = norm(instance.parent_from_child.linear);
             if (size < flattening * stretch * stretch) size = flattening * stretch * stretch;
             return size * mass_[instance.master];

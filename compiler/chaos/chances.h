@@ -8,8 +8,8 @@
 
 namespace graftal {
 
-/// By object, by instance: the chance that a random walk down from the object takes the instance. They add up
-/// to 1; of an object in which there is nothing to take points of (planes only) all are 0.
+/// Chances, by object and by instance, that a random walk down from the object takes the instance. They add
+/// up to 1. All are 0 for an object that has nothing to take points of (planes only).
 using Chances = std::vector<std::vector<double>>;
 
 /// The chances that the instances state; else by size, so that points lie evenly:

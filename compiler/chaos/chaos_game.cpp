@@ -169,7 +169,7 @@ class ChaosGame::Builder {
                 add_surface(id, instance, flow);
                 continue;
             }
-            // What arrives from inside the component is among the visits already.
+            // Flow from inside the component is among the visits already.
             if (components_.component_of[instance.master] != components_.component_of[id])
                 begins_[instance.master] += flow;
             arrivals_[instance.master].push_back({id, i, flow});

@@ -24,7 +24,7 @@
 
 namespace graftal {
 
-/// How a point looks: everything that is visible of it except its place.
+/// Look of a point: everything that is visible of it except its place.
 struct Paint {
     float red = 0, green = 0, blue = 0; ///< premultiplied
     float through = 1;                  ///< share of what lies behind
@@ -118,7 +118,7 @@ class ChaosPlayer {
     static constexpr std::size_t grain = 4;
 
   private:
-    /// In each core so many points wander at a time: a move waits for the one before.
+    /// Points that wander at a time in each core: a move waits for the one before.
     static constexpr std::size_t together = grain;
 
     struct Wanderer {

@@ -15,8 +15,8 @@ struct OrdinaryIfs {
 };
 
 /// The system that the root is, if it is one: an object that contains itself, or several that each contain
-/// all of them under one map, as `.rifs` has it where every map may follow every map. Nothing for other
-/// graphs.
+/// all of them under one map. A `.rifs` where every map may follow every map is the latter. Nothing for
+/// other graphs.
 std::optional<OrdinaryIfs> ordinary_ifs(const Graph& graph, const Components& components);
 
 /// A flat map, x -> linear x + translation in the plane z = 0, and the norm in which maps are to contract.

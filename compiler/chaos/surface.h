@@ -13,7 +13,7 @@ class RandomStream {
         : random_(CounterRandom(seed).sequence(sequence)) {}
 
     std::uint64_t bits() { return random_(count_++); }
-    /// Of [0, 1).
+    /// A number of [0, 1).
     double unit() { return CounterRandom::unit(bits()); }
 
   private:

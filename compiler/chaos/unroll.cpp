@@ -18,7 +18,7 @@ class Unrolling {
     std::optional<Graph> run(unsigned steps) {
         result_.materials = graph_.materials;
         result_.settings = graph_.settings;
-        result_.objects = graph_.objects; // those that end stay as they are, under their numbers
+        result_.objects = graph_.objects; // ending objects stay as they are, under their numbers
         for (ObjectId id = 0; id < graph_.objects.size(); ++id)
             if (components_.unending[id]) result_.objects[id] = Object();
         sphere_ = result_.primitive(PrimitiveKind::sphere);

@@ -13,12 +13,12 @@
 namespace graftal {
 
 /// Recognises parts that lie as another did that was met: where thousands of a set without area lie in each
-/// other, one of those that nobody can tell apart will do. Keeps hashes of 64 bits, not the places.
+/// other, one of those that nobody can tell apart is enough. Keeps hashes of 64 bits, not the places.
 class AlikeSet {
   public:
     /// Whether to go on with the part. `what`: parts of other kinds are never alike. `place`: in units of a
-    /// cell, to which it is rounded. `scale`: its size, finite. A part is left out for one that is no larger,
-    /// and so never for one that it is a part of itself, which would be drawn without it.
+    /// cell, to which it is rounded. `scale`: its size, finite. A part is left out for one that is no
+    /// larger. So it is never left out for its own whole, which would be drawn without it.
     bool insert(std::uint64_t what, const Affine& place, double scale) {
         std::uint64_t hash = what;
         for (const Vec3& cells : {place.linear[0], place.linear[1], place.linear[2], place.translation})
@@ -73,7 +73,7 @@ class AlikeSet {
     std::size_t size_ = 0;
 };
 
-/// What of a node with so many steps left is alike.
+/// Key of the parts that are alike: those of one node with as many steps left.
 inline std::uint64_t alike_kind(std::uint32_t node, std::uint32_t steps, bool faint) {
     return mixed(std::uint64_t{node} * 2 + faint, steps);
 }

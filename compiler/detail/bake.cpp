@@ -28,10 +28,10 @@ namespace graftal {
 
 namespace {
 
-/// What it takes to widen a leaf, and to keep one, measured, in visits of the walk: where leaves are many,
-/// each that is kept waits for memory.
+/// Cost of widening a leaf, and of keeping one, measured, in visits of the walk: where leaves are many, each
+/// that is kept waits for memory.
 constexpr std::uint64_t visits_of_widening = 10, visits_of_keeping = 5;
-/// Room is made for so many leaves beforehand, at most.
+/// Most leaves for which room is made beforehand.
 constexpr double most_expected_leaves = 1 << 20;
 
 struct KeptLeaf {
@@ -41,11 +41,11 @@ struct KeptLeaf {
     double turns = 1;
 };
 
-/// What leaves of one part have in common.
+/// Attributes that the leaves of one part share.
 struct PartKey {
     std::int64_t material = -1; ///< none: -1
     bool textured = false;
-    std::array<double, 4> tint{}; ///< of what has a texture
+    std::array<double, 4> tint{}; ///< of textured leaves
     double light_share = 1;
     auto operator<=>(const PartKey&) const = default;
 };
@@ -63,9 +63,8 @@ struct BakedPart {
     std::vector<std::uint32_t> leaf_of_triangle;
 };
 
-/// Turns spread evenly over all (M. Alexa, "Super-Fibonacci Spirals", CVPR 2022). The shadows of an
-/// octahedron differ by a quarter with the direction; those of many that are turned in so many ways hardly
-/// do.
+/// One of 16 turns spread evenly over all (M. Alexa, "Super-Fibonacci Spirals", CVPR 2022). The shadows of
+/// an octahedron differ by a quarter with the direction; those of many that are turned so hardly do.
 Affine spread_turn(std::size_t number) {
     constexpr int turns = 16;
     static const std::array<Affine, turns> all = [] {
@@ -94,7 +93,7 @@ class Baker {
         try {
             unfold();
         } catch (const std::bad_alloc&) {
-            // What was visited counts as work: tries that end for their memory are not for nothing.
+            // Visits count as work: tries that end for their memory have a price.
             baked_.complete = false;
         }
         if (baked_.complete) return std::move(baked_);
@@ -150,7 +149,7 @@ class Baker {
             part.leaves.push_back({place, primitive, leaf.normals, leaf.turns});
             numbers_.push_back(number);
             baked_.culled_detail = std::max(baked_.culled_detail, leaf.culled_detail);
-            // Of a solid no face may be left where others touch it; it counts when the mesh is built.
+            // A solid may have no face left where others touch it; it counts when the mesh is built.
             triangles += traits_of(leaf.primitive).solid ? 1 : coarsest.triangles.size();
             if (triangles > max_triangles_) {
                 baked_.complete = false;
@@ -171,8 +170,8 @@ class Baker {
         const auto [wide, half_width] = drawn_leaf(leaf.primitive, seen, leaf.faint, culls ? 1 : 0);
         if (!(half_width > 0)) return mark = place;
         const Affine unit_from_seen = inverse(seen_from_unit);
-        // What a singular map crushes onto a line or a sheet piles up there, and specks do: one leaf a cell
-        // will do.
+        // Leaves that a singular map crushes onto a line or a sheet pile up there, and specks do: one leaf a
+        // cell is enough.
         const bool speck = leaf.faint && largest_stretch(seen.linear) <= half_width;
         mark = unit_from_seen * wide;
         if (leaf.crushed || speck)

@@ -50,7 +50,7 @@ struct BakedPart {
     std::vector<Palette> palettes; ///< by painter
     bool textured = false;         ///< by the material's picture, behind this tint; requires one painter
     PathTint tint;
-    double light_share = 1; ///< of what shines on it (self_shadow.h)
+    double light_share = 1; ///< share of the light on it (self_shadow.h)
 };
 
 struct Baked {
@@ -64,8 +64,8 @@ struct Baked {
     bool complete = true;         ///< false: stopped at max_triangles, at most_visits, or where memory ended
 };
 
-/// What curved surfaces may be off by; and where parts of this many pixels are culled: were the surfaces of
-/// those that are left much finer than that, no one would see it, and few would fit the memory.
+/// Largest error of curved surfaces where parts of `error_px` pixels are culled. If surfaces were much finer
+/// than the parts that are left, nobody would see it, and few would fit the memory.
 inline constexpr double tessellation_tolerance_px = 0.2;
 constexpr double tessellation_tolerance(double error_px) {
     return error_px > 4 * tessellation_tolerance_px ? error_px / 4 : tessellation_tolerance_px;

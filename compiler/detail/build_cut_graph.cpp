@@ -80,7 +80,7 @@ class Builder {
     }
 
   private:
-    /// By object: of a part the object that it is a part of, else itself.
+    /// The whole of each object: for a part the object that it is a part of, else itself.
     std::vector<ObjectId> wholes() const {
         std::vector<ObjectId> whole_of(graph_.objects.size());
         std::iota(whole_of.begin(), whole_of.end(), 0u);

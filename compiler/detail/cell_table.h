@@ -70,7 +70,7 @@ class CellTable {
         return (packed ^ (packed >> 32)) * 0xD6E8FEB86659FD93ull;
     }
     static std::uint32_t tag_of(std::uint64_t hash) { return static_cast<std::uint32_t>(hash >> 32); }
-    /// Of the tag alone, so that growing needs no cells. Requires fewer than 2^32 slots.
+    /// Slot by the tag alone, so that growing needs no cells. Requires fewer than 2^32 slots.
     std::size_t home(std::uint64_t hash) const { return tag_of(hash) & mask_; }
 
     void grow() {

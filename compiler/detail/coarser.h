@@ -13,11 +13,11 @@ struct CoarserError {
     double asked_px = 0;
 };
 
-/// What did not allow a finer picture.
+/// The limit that did not allow a finer picture.
 struct Limit {
     std::string allowed;   ///< such as "2 GiB of memory"
-    std::string option;    ///< that gives more
-    std::string besides{}; ///< what else was done to the picture, or ""
+    std::string option;    ///< the option that gives more
+    std::string besides{}; ///< another change to the picture, or ""
     std::string need{};    ///< a sentence on what the picture as asked would take, or ""
     std::string or_else{}; ///< another way to a finer picture, or ""
 };

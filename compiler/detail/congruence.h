@@ -7,8 +7,8 @@
 namespace graftal {
 
 /// The node pairs of a Symmetry followed to their ends: nodes whose geometry is the same, moved. Unlike the
-/// classes of Symmetry this minds every pair that a mesh rests on, by whatever isometry, and the isometries
-/// that take a node to itself.
+/// classes of Symmetry this minds every pair that a mesh rests on, by any isometry. It also minds the
+/// isometries that take a node to itself.
 struct Congruence {
     std::vector<NodeId> root; ///< by node: the first of its group
     std::vector<Affine> node_from_root;

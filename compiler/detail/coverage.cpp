@@ -21,13 +21,13 @@ namespace {
 constexpr std::size_t all_pieces = 50'000, fewest_pieces = 8, most_pieces = 192;
 /// A node of more instances keeps the ellipsoid in its box: such crowds are hardly culled as a whole.
 constexpr std::size_t most_edges = 10'000;
-/// With more nodes than this, shadows are taken along six directions.
+/// Number of nodes above which shadows are taken along six directions.
 constexpr std::size_t many_nodes = 3000;
-constexpr std::size_t fine_factor = 12; ///< so many more parts to see what a cycle ends in
+constexpr std::size_t fine_factor = 12; ///< times as many parts, to see the end of a cycle
 constexpr int most_rounds = 10;
-/// Of growth_of_area(), about 1.
+/// Difference of growth_of_area() from 1 that counts as none.
 constexpr double same_area = 1e-6;
-/// Of the shadow of the ellipsoid in a node's box, for what stands for the node to be full.
+/// A stand-in is full if its shadow has at least this share of that of the ellipsoid in the node's box.
 constexpr double full_share = 0.5;
 
 /// Fits the groups of congruent nodes, masters first.
@@ -102,8 +102,8 @@ class Fitter {
                node.ball.radius > 0;
     }
 
-    /// Those whose proxies may be drawn, and what these are measured by. A crowd of thousands of small things
-    /// keeps the ellipsoid in its box, and none of them is ever drawn by another.
+    /// Roots whose proxies may be drawn, and those that these are measured by. A crowd of thousands of small
+    /// things keeps the ellipsoid in its box, and none of them is ever drawn by another.
     std::vector<bool> wanted_roots(const Components& components) const {
         std::vector<bool> wanted(cut_.nodes.size(), false);
         for (NodeId id = 0; id < cut_.nodes.size(); ++id)
@@ -262,7 +262,7 @@ class Fitter {
                 const Vec3 s = singular_values(edge.node_from_child.linear);
                 factors[i].emplace_back(at, (s.x * s.y + s.y * s.z + s.z * s.x) / 3);
             }
-        // Of I + M, whose powers converge where those of M may take turns.
+        // Powers of I + M converge where those of M may take turns.
         std::vector<double> area(roots_.size(), 1), next(roots_.size());
         double growth = 1;
         for (int step = 0; step < 200; ++step) {
@@ -306,7 +306,7 @@ class Fitter {
             }
     }
 
-    /// What was seen of the edges of a root is seen of those that they are paired with.
+    /// Gives the visible weights of a root's edges to the edges that they are paired with.
     void weigh_edges() {
         for (const std::uint32_t p : congruence_.order) {
             const NodePair& pair = symmetry_.pairs[p];
@@ -363,7 +363,7 @@ std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry, std::uint64_t
 
 bool is_flat(const CutNode& node) {
     // The ellipsoid in the box, which is a fiftieth as thick as long at least.
-    const Vec3 axes = singular_values(node.node_from_proxy.linear); // it may be turned
+    const Vec3 axes = singular_values(node.node_from_proxy.linear); // the ellipsoid may be turned
     return axes.z <= 0.021 * axes.x;
 }
 

@@ -26,7 +26,7 @@ MeanColour mean_of(const CutGraph& cut, const CutNode& node) {
     return {sum.fixed / weights, sum.open / weights};
 }
 
-/// By material, and of what inherits: how much is seen of each below a node, all together 1.
+/// Shares, by material and of parts that inherit, in the visible area below a node, all together 1.
 void set_shares(const CutGraph& cut, const CutNode& node, const std::vector<double>& shares,
                 std::vector<double>& sum) {
     const std::size_t width = cut.materials.size() + 1;

@@ -27,7 +27,7 @@ struct CutEdge {
     double weight = 1;         ///< in the node's mean colour
 };
 
-/// What a node's limit looks like from afar, weighted by area: fixed + open * (the colour that it inherits).
+/// Colour of a node's limit from afar, weighted by area: fixed + open * (the colour that it inherits).
 struct MeanColour {
     Rgb fixed{0.0};
     double open = 1;
@@ -45,7 +45,7 @@ struct CutNode {
     std::vector<CutEdge> stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
     std::shared_ptr<const RunCell> cell; ///< in place of edges: see for_each_edge() (run_cells.h)
     bool terminal = false;               ///< stop_edges holds the terminal, not the ending instances
-    double terminal_px = 0;              ///< as the object's (graph.h)
+    double terminal_px = 0;              ///< the object's (graph.h)
     bool unending = false;
     bool solid = false;      ///< some way leads to a primitive
     bool unbounded = false;  ///< is a plane or holds one: always expanded into placements
@@ -57,8 +57,8 @@ struct CutNode {
     Ball ball;
     Affine node_from_proxy; ///< places the unit sphere: the ellipsoid in the node's box, until fit_proxies()
     MeanColour mean;
-    std::optional<MeanColour> lit;    ///< what its proxy shows in place of `mean`: see set_lit_colours()
-    std::optional<MaterialId> finish; ///< of what is seen most in its limit; none: that it inherits
+    std::optional<MeanColour> lit;    ///< its proxy's colour in place of `mean`: see set_lit_colours()
+    std::optional<MaterialId> finish; ///< the most visible one in its limit; none: that it inherits
 };
 
 /// A graph after the passes for detail, with what unfolding it asks for at every edge.
@@ -70,7 +70,7 @@ struct CutGraph {
     bool contractive = true; ///< every edge within a cycle has stretch < 1: products of stretches end
 };
 
-/// What stands for a node has it.
+/// The colour of the stand-in for a node.
 inline const MeanColour& colour_of_proxy(const CutNode& node) {
     return node.lit ? *node.lit : node.mean;
 }

@@ -8,22 +8,22 @@
 
 namespace graftal {
 
-/// What prepare_cut() has to know of the picture.
+/// Facts of the picture that prepare_cut() needs.
 struct PrepareOptions {
     std::optional<unsigned> steps;            ///< levels; nothing: as deep as the error asks for
     bool culls = true;                        ///< whether anything is culled for its size
     bool keeps_objects = false;               ///< DetailOptions'
-    std::uint64_t most_bodies = usual_bodies; ///< that are drawn to fit proxies (fit_proxies())
+    std::uint64_t most_bodies = usual_bodies; ///< bodies drawn to fit proxies (fit_proxies())
     static constexpr std::uint64_t usual_bodies = 4'000'000;
     bool operator==(const PrepareOptions&) const = default;
 };
 
 struct DetailOptions {
     double error_px = 0.5; ///< parts whose diameter projects to at most this are culled; 0: nothing is
-    std::optional<double> error_world;       ///< the same as a length in scene units, in place of error_px
+    std::optional<double> error_world;       ///< error_px as a length in scene units, in place of it
     std::optional<unsigned> steps;           ///< levels; nothing: as deep as the error asks for
     std::uint64_t memory_bytes = 2ull << 30; ///< POV-Ray's estimated peak
-    /// The light of what is culled is rounded to so many steps. POV-Ray's scenes have finishes and meshes for
+    /// Steps to which the light of culled parts is rounded. POV-Ray's scenes have finishes and meshes for
     /// each: by 64ths plants/autumn.inst had an error of 22 px within 1 GiB, by sixteenths of 4.
     int light_steps = 16;
     double work_seconds = 30;  ///< of one processor, for the picture (work.h); infinite: whatever it takes

@@ -36,7 +36,7 @@ class FacetSet {
 
     const std::vector<Vec3>& vertices() const { return vertices_; }
     const std::vector<Facet>& facets() const { return facets_; }
-    /// Of what is not hidden.
+    /// Number of triangles that are not hidden.
     std::size_t triangle_count() const { return triangle_count_; }
 
   private:

@@ -139,7 +139,7 @@ std::shared_ptr<const InsideGrid> find_inside(const std::vector<Point>& points, 
     work += flood_work;
     Flood flood(cell, reach);
     flood.take(points);
-    if (known) flood.take(*known); // what was left out is no hole
+    if (known) flood.take(*known); // points left out before are no hole
     flood.run();
     return flood.inside();
 }

@@ -11,10 +11,10 @@ namespace graftal {
 
 namespace {
 
-/// Parts are compared after so many visits, where most walks are at their end.
+/// Visits after which parts are compared: most walks are at their end by then.
 constexpr std::uint64_t most_patience = 4096;
 constexpr double cell_half_widths = 0.5;
-/// What a comparison takes, measured: it finds singular values, and a cell of a table.
+/// Cost of a comparison, measured: it finds singular values, and a cell of a table.
 constexpr std::uint64_t visits_of_a_comparison = 4;
 
 } // namespace
@@ -97,7 +97,7 @@ NormalField LeafWalk::normals() const {
     return field;
 }
 
-/// Of what stands for the node that is visited.
+/// Share of light of the stand-in for the node that is visited.
 double LeafWalk::light_share(double detail) const {
     if (!self_shadows_) return visit_.light_share;
     return self_shadows_->share_within(visit_.light_share, visit_.shape, detail, error_px_);
@@ -135,7 +135,7 @@ void LeafWalk::push_items() {
     }
 }
 
-/// False for what lies as another part did, as nearly as can be seen.
+/// False for a part that lies as another did, as nearly as can be seen.
 bool LeafWalk::is_new(const Visit& child) {
     if (visits_ < most_patience || cells_from_unit_ == Mat3(0.0) || !cut_.nodes[child.shape].widens)
         return true;

@@ -23,7 +23,7 @@ struct WalkedLeaf {
     bool faint = false;                 ///< of a set without area (least_width.h)
     NormalField normals;                ///< of a proxy, in the representative's frame, if asked for
     bool proxy = false;
-    double light_share = 1; ///< of what shines on it (self_shadow.h)
+    double light_share = 1; ///< share of the light on it (self_shadow.h)
     PathTint tint;          ///< all tints of the walk, by the first painter
     double turns = 1;       ///< length_in_turns() of its instance
 };
@@ -55,7 +55,7 @@ class LeafWalk {
         double turns = 1;        ///< of a primitive
         double light_share = 1;
     };
-    /// What one painter makes of a visit.
+    /// The colours that one painter gives to a visit.
     struct Paint {
         std::uint32_t pair = 0;
         PathTint tint;
@@ -82,7 +82,7 @@ class LeafWalk {
     const SelfShadows* self_shadows_;
     bool limit_normals_;
     std::vector<Visit> stack_;
-    std::vector<Paint> paint_stack_; ///< as many for each visit as there are painters
+    std::vector<Paint> paint_stack_; ///< one a painter for each visit
     Visit visit_;                    ///< the last one popped
     std::vector<Ball> balls_;        ///< of the unending nodes above it, from the root on
     std::vector<Paint> paints_;

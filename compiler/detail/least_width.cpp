@@ -40,7 +40,7 @@ std::array<Vec3, 2> across(Vec3 unit) {
     return {first, glm::cross(unit, first)};
 }
 
-/// What is a line as far as this width shows becomes round.
+/// Makes a part round that is a line as far as this width shows.
 Mat3 widened_line(const Mat3& place, double half_width) {
     const Vec3* longest = &place[0];
     for (int i = 1; i < 3; ++i)
@@ -77,7 +77,7 @@ Mat3 widened(const Mat3& place, double half_width, FlatOnce& flat_once) {
     const Eigen::Map<const Eigen::Matrix3d> linear(&place[0][0]); // both go by columns
     Mat3 result;
     Eigen::Map<Eigen::Matrix3d> wide(&result[0][0]);
-    // Of the squares, in closed form: much faster, and exact enough where the half axes are of one order.
+    // Eigenvalues of the squares, in closed form: much faster, and exact enough for half axes of one order.
     constexpr double alike = 1e-3;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> squares;
     squares.computeDirect(linear.transpose() * linear);

@@ -15,7 +15,7 @@ inline constexpr double least_half_width_px = 0.5;
 /// A map as flat as this is taken for singular: what it places is drawn as if it had no thickness of its own.
 inline constexpr double flattest_leaf = 1e-6;
 
-/// A part whose map is as flat as this is not placed but baked into a neighbour above, and rays are not taken
+/// A part whose map is as flat as this is not placed but baked into a neighbour above. Rays are not taken
 /// into its frame.
 inline constexpr double flattest_placement = 1e-5;
 
@@ -31,12 +31,12 @@ Affine widened(const Primitive& primitive, const Affine& place, double radius);
 /// Holds the primitive as widened() places it, for a half width that was needed.
 Ball widened_ball(const Primitive& primitive, const Affine& place, double radius);
 
-/// How many half widths a part may reach from its middle that is widened in all directions: a ball one, the
+/// Half widths that a part reaches from its middle if it is widened in all directions: a ball one, the
 /// corners of others more.
 double widened_reach(const Primitive& primitive);
 
-/// The same for all widened leaves of which one will do: in one cell of half a half width, of one size to a
-/// factor of 2.
+/// One place for all widened leaves of which one is enough: in one cell of half a half width, of one size to
+/// a factor of 2.
 Affine speck_mark(const Affine& place, double half_width);
 
 /// A leaf as it is drawn.
@@ -45,7 +45,7 @@ struct DrawnLeaf {
     double half_width = 0; ///< half_width_needed()
 };
 
-/// The same as asking these two, and what both must know of the map is found out once.
+/// widened() by half_width_needed(): facts of the map that both need are found once.
 DrawnLeaf drawn_leaf(const Primitive& primitive, const Affine& place, bool faint, double half_width);
 
 } // namespace graftal

@@ -5,12 +5,11 @@
 namespace graftal {
 
 /// The normal of a set that has none: J. Hart and T. DeFanti ("Efficient Antialiased Rendering of 3-D Linear
-/// Fractals", 1991) take it from the balls that bound the parts on the way to a point. Here the part that is
-/// drawn counts by its own normal, and each of the unending nodes above it by where the point lies in its
-/// ball,
+/// Fractals", 1991) take it from the balls that bound the parts on the way to a point. Here the drawn part
+/// counts by its own normal, and each unending node above it by the place of the point in its ball,
 ///     n = n_0 + sum_k ratio^-k (p - c_k) / r_k,
-/// k = 1 being the nearest. What is smaller than a pixel then shows the relief of what is larger, in place of
-/// the noise of its own surface. Weights fall fast enough that meshes, which know only the levels inside
+/// k = 1 being the nearest. Parts smaller than a pixel then show the relief of larger ones, in place of the
+/// noise of their own surface. Weights fall fast enough that meshes, which know only the levels inside
 /// them, and the tracer, which knows all, come to nearly the same.
 inline constexpr double limit_normal_ratio = 1.5;
 inline constexpr int limit_normal_levels = 6;
@@ -24,7 +23,7 @@ struct NormalField {
 
     /// Adds the ball of level k >= 1.
     void add(int level, Vec3 centre, double radius);
-    /// The same field in a frame that is only scaled and moved: parent_from_child(x) = scale x + shift.
+    /// The field in a frame that is only scaled and moved: parent_from_child(x) = scale x + shift.
     NormalField seen_from(double scale, Vec3 shift) const;
 };
 

@@ -17,7 +17,7 @@ double scatter_of(const Material& material) {
     return (material.diffuse + material.translucency) * (1 - material.transparency);
 }
 
-/// What scatters light below a node, of all that is seen of it.
+/// Colours that scatter light below a node, weighted by the visible area.
 struct Lit {
     Rgb known{0.0};      ///< colour times scatter, of parts whose finish is known
     double scatter = 0;  ///< of these

@@ -15,7 +15,7 @@ namespace graftal {
 struct Mesh {
     std::vector<Vec3> vertices;
     std::vector<Vec3> normals; ///< empty: flat; else one a vertex, of unit length
-    /// Of what has a texture, one a vertex (texture_space.h); such a mesh has one slot, which does not count.
+    /// Places on a texture, one a vertex (texture_space.h). Such a mesh has one slot, which does not count.
     std::vector<std::array<double, 2>> uv;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<std::uint32_t> slot_of_triangle; ///< empty if slot_count == 1

@@ -15,7 +15,7 @@ namespace graftal {
 
 namespace {
 
-/// So many facets are compared with each other before they are compared with all.
+/// Facets that are compared with each other before they are compared with all.
 constexpr std::size_t most_latest_facets = 16384;
 
 /// The facets of a flat primitive, and the same seen in a mirror.
@@ -32,7 +32,7 @@ const FacetSides& facet_sides(const Primitive& primitive) {
     });
 }
 
-/// Of unit length, where the sum has a direction.
+/// The direction of a sum, of unit length, where it has one.
 Vec3 unit_or(Vec3 sum, Vec3 otherwise) {
     const double length = glm::length(sum);
     return length > 1e-6 ? sum / length : otherwise;

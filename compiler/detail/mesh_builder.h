@@ -25,14 +25,14 @@ class MeshBuilder {
     void add(const Primitive& primitive, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
              const NormalField& normals = {});
 
-    /// The same in a smooth mesh, with texture coordinates; each triangle has corners of its own.
+    /// Adds a primitive to a smooth mesh, with texture coordinates; each triangle has corners of its own.
     void add_textured(const Primitive& primitive, int fineness, const Affine& body_from_leaf,
                       const TextureSpace& space, std::uint32_t leaf);
 
     /// Makes the triangles of the faces that are seen. Call once, after the last add().
     void finish();
 
-    /// So far, faces that are found to be hidden not counted.
+    /// Triangles so far, without faces that are found to be hidden.
     std::size_t triangle_count() const;
 
     Mesh mesh; ///< without slots
@@ -49,8 +49,8 @@ class MeshBuilder {
     std::uint32_t used(std::uint32_t vertex);
 
     bool smooth_;
-    // Of a flat mesh. Neighbours come soon after each other: most faces meet while they are among the latest
-    // few, whose tables are small enough for a cache.
+    // Facets of a flat mesh. Neighbours come soon after each other: most faces meet while they are among the
+    // latest few, whose tables are small enough for a cache.
     FacetSet latest_;
     FacetSet all_;
     std::vector<std::uint32_t> used_;

@@ -19,10 +19,10 @@ namespace graftal {
 
 namespace {
 
-/// Of one ray. Others are given up.
+/// Most parts of one ray. Rays with more are given up.
 constexpr std::uint64_t most_parts = 20'000;
 constexpr std::uint32_t deepest = 512;
-/// What stands for a node may reach out of its ball by this factor.
+/// Factor by which the stand-in for a node may reach out of its ball.
 constexpr double reach_of_proxies = 1.25;
 
 } // namespace

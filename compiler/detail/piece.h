@@ -20,8 +20,8 @@ struct Piece {
     Rgb inherited{0.8};                 ///< the colour that what names no material shows
     std::optional<MaterialId> material; ///< whose finish it shows
     double turns = 1;                   ///< of a primitive: length_in_turns() of its instance
-    bool faint = false;                 ///< it stands for a set without area that was culled
-    double light_share = 1; ///< of what shines on it: it stands for what shades itself (self_shadow.h)
+    bool faint = false;                 ///< stands for a culled set without area
+    double light_share = 1; ///< share of the light on it, whose parts would shade themselves (self_shadow.h)
 };
 
 /// The look of what an edge leads to, of anything that has a `tint`, the `inherited` colour of what names no

@@ -37,7 +37,7 @@ double cut_detail(const CutNode& node, double error_px);
 /// The rule that ends recursion: no level left, or too small.
 bool is_cut(const CutNode& node, std::uint32_t steps, double detail, double error_px);
 
-/// The same; `small`: enough to be cut for its size.
+/// The rule of is_cut(). `small`: enough to be cut for its size.
 bool ends_by(const CutNode& node, std::uint32_t steps, bool small);
 
 } // namespace graftal

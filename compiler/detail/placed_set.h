@@ -27,7 +27,7 @@ class PlacedSet {
     void extend(Digest& digest, double value) const;
 
     double unit_;
-    // What was asked last: neighbours often differ by their translations alone.
+    // The last question: neighbours often differ by their translations alone.
     std::uint32_t last_thing_ = UINT32_MAX;
     Mat3 last_linear_{0.0};
     Digest last_digest_{}; ///< of both

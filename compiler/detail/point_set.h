@@ -11,7 +11,7 @@
 
 namespace graftal {
 
-/// What a point shows: fixed + open * (the colour that the node inherits); tints on the way are in it.
+/// Look of a point: fixed + open * (the colour that the node inherits); tints on the way are in it.
 struct PointPaint {
     std::array<float, 3> fixed{};
     float open = 1;
@@ -25,10 +25,10 @@ struct PointPaint {
                        const std::vector<Material>& materials) const;
 };
 
-/// Of a shell's surface, about; one that would have more is coarser.
+/// Most cells of a shell's surface, about; one that would have more is coarser.
 inline constexpr double most_shell_cells = 7e5;
 
-/// What may be spent on points.
+/// Limits of the work on points, and of their number.
 struct PointLimits {
     std::uint64_t work = 300'000'000; ///< in all: points moved and sampled, cells flooded
     std::size_t points = 8'000'000;   ///< kept at once, of all nodes
@@ -41,10 +41,10 @@ struct PointSet {
     bool flat = false;                        ///< all points lie in z = middle.z
     std::vector<std::array<float, 3>> points; ///< from the middle, in the node's units
     std::vector<PointPaint> paints;           ///< by point; empty: all plain
-    std::shared_ptr<const InsideGrid> inside; ///< what no eye outside can see; none if nothing is
-    std::uint64_t work = 0;                   ///< that it took, also where nothing came of it
-    /// Who asks for cells of a side between these gets the same points: where the limits decide, however
-    /// fine.
+    std::shared_ptr<const InsideGrid> inside; ///< cells that no eye outside can see; null: none
+    std::uint64_t work = 0;                   ///< cost, also where nothing came of it
+    /// Range of sides of cells for which the points are the same: where the limits decide, there is no finer
+    /// one.
     double finest_asked = 0, coarsest_asked = 0;
 
     /// Whether the point (from the middle) is well inside.

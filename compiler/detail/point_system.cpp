@@ -31,7 +31,7 @@ constexpr double sample_spacing = 0.6;
 constexpr double seed_accuracy = 1e-7;
 constexpr int most_seed_steps = 4000;
 
-/// Of the root's parts that are sampled one by one: so many, down to so many cells across.
+/// Most of the root's parts that are sampled one by one, and the least size of one, in cells.
 constexpr std::size_t most_large_parts = 30'000;
 constexpr double least_large_part = 12;
 
@@ -98,7 +98,7 @@ bool PointSystem::add_large_parts() {
 PointSystem::CoarseStates PointSystem::take_coarse() {
     CoarseStates found;
     for (State& state : states_) {
-        // Where a finer look takes too much room or work, the last one will do.
+        // Where a finer look takes too much room or work, the last one is taken.
         std::shared_ptr<const InsideGrid> inside =
             find_inside(state.points, state.cell, state.inside.get(), work_, most_work_);
         if (!inside) inside = state.inside;
@@ -161,7 +161,7 @@ bool PointSystem::add_states(StateKey root) {
             walk.push({child_stretch, *child});
         }
     }
-    // What no way reaches with a size has none.
+    // A node that no way reaches with a size has none.
     for (State& state : states_)
         if (!(state.stretch > 0)) return false;
     return true;

@@ -23,10 +23,10 @@ class PointSystem {
     using Point = std::array<float, 3>;
     using StateKey = std::pair<NodeId, std::uint32_t>;
 
-    /// What a run on a coarse grid leaves to the next.
+    /// The part of a run on a coarse grid that the next run uses.
     struct Coarse {
         std::shared_ptr<const InsideGrid> inside;
-        std::vector<Point> points; ///< that are not inside
+        std::vector<Point> points; ///< points that are not inside
         std::vector<PointPaint> paints;
     };
     using CoarseStates = std::map<StateKey, Coarse>;
@@ -35,7 +35,7 @@ class PointSystem {
     struct State {
         StateKey key;
         double stretch = 0; ///< largest product of stretches on a way from the root
-        bool tiny = false;  ///< no larger than a cell: a point will do
+        bool tiny = false;  ///< no larger than a cell: a point is enough
         bool cut = false;
         double cell = 0;
         Vec3 middle{0.0};
@@ -54,7 +54,7 @@ class PointSystem {
     /// Keeps a reference.
     PointSystem(const CutGraph& cut, std::size_t most_points);
 
-    /// The node's grid with such cells, by at most so much work. False if a limit is passed.
+    /// Makes the node's grid of these cells, with `most_work` at most. False if a limit is passed.
     bool run(NodeId root, std::uint32_t steps, double cell, const CoarseStates& coarse,
              std::uint64_t most_work);
 
@@ -67,7 +67,7 @@ class PointSystem {
     std::uint64_t work() const { return work_; } ///< of the last run
     std::uint64_t all_work() const { return all_work_ + work_; }
 
-    /// What is inside of the larger states, and their points outside of it.
+    /// The insides of the larger states, and their points outside of these.
     CoarseStates take_coarse();
 
   private:
@@ -91,7 +91,7 @@ class PointSystem {
 
     static PointPaint mean_of(const CutNode& node);
 
-    /// What is drawn where parts end: the terminal, if there is one, by its own material.
+    /// The stand-in where parts end: the terminal, if there is one, by its own material.
     PointPaint ended(const CutNode& node) const;
 
     PointPaint paint_through(const PointPaint& paint, const CutEdge& edge, const State& parent) const;

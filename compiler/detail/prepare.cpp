@@ -15,9 +15,8 @@ namespace {
 /// Objects, comparisons and bodies after which the control is asked: some milliseconds.
 constexpr std::uint64_t prepared_a_look = 20'000;
 
-/// Where levels do not end, objects are cut for their size alone: a proxy then stands for all that is left
-/// out, and what an object would be drawn by at its last level, a trunk without its twigs, would be too
-/// little.
+/// Where levels do not end, objects are cut for their size alone. A proxy then stands for all that is left
+/// out. The form of an object's last level, a trunk without its twigs, would be too little.
 void drop_endings(CutGraph& cut) {
     for (CutNode& node : cut.nodes)
         if (!node.terminal && !node.sealed) node.stop_edges.clear();

@@ -37,8 +37,8 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
 bool refuse_endless(const Graph& graph, const Components& components, const DetailOptions& options,
                     Diagnostics& diagnostics);
 
-/// Notes that parts of a set without area are drawn wider than they are (least_width.h), where the model does
-/// not say what they look like, and how it can. For models of which something is culled.
+/// Notes that parts of a set without area are drawn wider than they are (least_width.h). The note says how
+/// the model can give their look, where it does not. For models of which something is culled.
 void note_shadowless(const CutGraph& cut, const Graph& graph, Diagnostics& diagnostics);
 
 /// The least distance from the eye that counts (Projection), so that the eye may lie on the model.

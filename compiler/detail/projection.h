@@ -14,8 +14,8 @@
 
 namespace graftal {
 
-/// How large things look. A *detail* is a length measured in units of the error allowed: what measures at
-/// most 1 may be culled. Infinite where nothing is culled.
+/// Sizes of things in the picture. A *detail* is a length measured in units of the error allowed: a part
+/// that measures at most 1 may be culled. Infinite where nothing is culled.
 class Projection {
   public:
     /// `near` is the least distance that counts, so that the eye may lie on the model.
@@ -23,7 +23,7 @@ class Projection {
 
     /// Pixels that one scene unit measures at the ball's nearest point, at most.
     double pixels_per_unit(const Ball& world_ball) const;
-    /// The same as far as it matters: less out of the picture, from where only shadows and reflections come.
+    /// pixels_per_unit(), less out of the picture, from where only shadows and reflections come.
     double pixels_that_matter(const Ball& world_ball) const;
     /// The detail of one scene unit there; less out of the picture too.
     double detail_per_unit(const Ball& world_ball) const;
@@ -51,13 +51,13 @@ class Projection {
     /// Pixels of a detail of 1; 0 where the error is a length in the scene, so that a detail tells no pixels.
     double error_px() const { return error_world_ > 0 ? 0 : error_px_; }
 
-    /// How much larger parts may be culled that only throw shadows into the picture, or are reflected in it.
+    /// Factor on the size of culled parts that only throw shadows into the picture, or are reflected in it.
     static constexpr double coarser_out_of_sight = 8;
 
   private:
     Camera camera_;
     bool visible_only_;
-    /// Of half the angle of view, across and up; of parallel rays: half the width or height, and 1.
+    /// Half the angle of view, across and up; for parallel rays `sine` is half the width or height.
     struct Edge {
         double sine = 0, cosine = 1;
     };

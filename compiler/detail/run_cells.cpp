@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// As of other objects (cut_graph.cpp).
+/// Limits for runs, as cut_graph.cpp has them for other objects.
 constexpr std::size_t uncullable_leaves_of_run = 16;
 constexpr double thinnest_proxy_of_run = 0.02;
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// Runs (graph/run.h) in the cut: an object that has one becomes a tree of nodes over its ranges, whose
-// lowest, the cells, hold no edges but a range of the run. What a cell holds is edges all the same, made one
-// by one where they are looked at.
+// Runs (graph/run.h) in the cut: an object that has one becomes a tree of nodes over its ranges. The lowest
+// nodes, the cells, hold a range of the run in place of edges. Their edges are made one by one where they
+// are looked at.
 
 #include <array>
 #include <cstddef>
@@ -34,10 +34,10 @@ struct RunCell {
         std::uint32_t count = 0;
     };
     std::vector<Alike> alike;
-    double flattest = 1; ///< of all parts the least length along an axis, as a share of the largest
+    double flattest = 1; ///< least length of any part along an axis, as a share of the largest
 };
 
-/// The level of RunBounds whose ranges become cells, if there are so many items.
+/// The level of RunBounds whose ranges become cells, if there are enough items.
 inline constexpr std::size_t cell_level = 1;
 
 /// The edge to the primitive of an item, or to the ball at its end.
@@ -63,7 +63,7 @@ template<typename Visit> void for_each_edge(const CutNode& node, bool cut, const
     }
 }
 
-/// How many edges that are.
+/// Number of edges that for_each_edge() visits.
 std::size_t edge_count(const CutNode& node, bool cut);
 
 /// Fills in `node`, which has everything else of its object but edges, ball and proxy, and adds the nodes

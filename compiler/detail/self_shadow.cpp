@@ -19,10 +19,10 @@ namespace {
 
 constexpr std::uint64_t most_rays = 1 << 15;
 constexpr double enough_hits = 8000;
-/// Lights are listed in so many, of which each hit tries a few.
+/// Lights in the list for each kind; each hit tries a few.
 constexpr LightListSize lights_of_areas{4, 48, 4};
 constexpr std::size_t lights_a_hit = 3;
-/// An object that so many rays meet is believed as much as all objects together.
+/// Rays of an object by which it is believed as much as all objects together.
 constexpr double rays_of_doubt = 64;
 /// Sizes are told apart by quarters of an octave.
 constexpr std::size_t bins = 64;
@@ -34,7 +34,7 @@ double brightness(Rgb rgb) {
     return (rgb.r + rgb.g + rgb.b) / 3;
 }
 
-/// What rays have seen of the parts of an object.
+/// Hits and light of rays on the parts of an object.
 struct Seen {
     double culled_hits = 0, whole_hits = 0;
     double whole_light = 0;
@@ -51,7 +51,7 @@ struct Seen {
 
     double hits() const { return std::min(culled_hits, whole_hits); }
 
-    /// Of the light where parts are culled, with these shares.
+    /// Light where parts are culled, with these shares.
     double light_with(double octave_log) const {
         double sum = 0;
         for (std::size_t i = 0; i < bins; ++i)
@@ -59,7 +59,7 @@ struct Seen {
         return sum / culled_hits;
     }
 
-    /// With which both are as bright in the mean; 0 where there is nothing to compare.
+    /// The logarithm with which both are as bright in the mean; 0 where there is nothing to compare.
     double octave_log() const {
         if (!(hits() > 0) || !(light_with(0) > 0)) return 0;
         const double light = whole_light / whole_hits;
@@ -78,7 +78,7 @@ struct LitPoint {
     Rgb rgb;
     const Material& material;
 
-    /// Of light from there: what falls on the viewer's side, or comes through from the other.
+    /// Scattered part of light from there: it falls on the viewer's side, or comes through from the other.
     double scattered(Rgb light, Vec3 direction) const {
         const double cosine = glm::dot(normal, direction);
         return brightness(rgb * light) * (cosine > 0 ? material.diffuse : -material.translucency) * cosine;
@@ -168,7 +168,7 @@ class Measurer {
         return meets_culled || meets_whole;
     }
 
-    /// What the surface scatters to the viewer of the light that reaches either side of it.
+    /// Light that the surface scatters to the viewer, of all that reaches either side of it.
     double light(PartRays& rays, const Ray& ray, const PartHit& hit, double choice) {
         const LitPoint lit{ray(hit.t), glm::dot(hit.normal, ray.direction) > 0 ? -hit.normal : hit.normal,
                            hit.rgb, hit.material ? cut_.materials[*hit.material] : plain_};
@@ -191,12 +191,12 @@ class Measurer {
         return glm::normalize(light.sun ? light.location : light.location - point);
     }
 
-    /// What is scattered of a light, if nothing hides it.
+    /// Scattered part of a light, if nothing hides it.
     double shadowed(PartRays& rays, const Light& light, const LitPoint& lit) const {
         const Vec3 point = lit.point, direction = towards(light, point);
         const double scattered = lit.scattered(light.rgb, direction);
         if (!(scattered > 0)) return 0;
-        constexpr double least_px = 1e-3; // as the tracer's
+        constexpr double least_px = 1e-3; // the tracer's shadow_pixels
         RayRange range{least_px / whole_projection_.pixels_per_unit({point, 0})};
         if (!light.sun) range.most = glm::length(light.location - point);
         return rays.meets_any({point, direction}, range) ? 0 : scattered;
@@ -205,7 +205,7 @@ class Measurer {
     const std::uint64_t most_work_;
     const CutGraph& cut_;
     const View& view_;
-    const Material plain_; ///< of what names none
+    const Material plain_; ///< of parts that name none
     Projection culled_projection_, whole_projection_;
     PartRays culled_, whole_;
     std::vector<Light> lights_, bare_;

@@ -11,18 +11,17 @@
 
 namespace graftal {
 
-/// What is culled shades itself, and what is drawn in its place hardly does: by how much that is to be
-/// darker. A part that measures 2^k of `lit_as_px` gets the power k of its object's share, since each level
-/// of a fractal takes the same share of the light. So the picture of any error has the light of the default
-/// one.
+/// Shares of light that make up for the shade that culled parts throw on themselves: stand-ins hardly do. A
+/// part that measures 2^k of `lit_as_px` gets the power k of its object's share: each level of a fractal
+/// takes the same share of the light. So the picture of any error has the light of the default one.
 class SelfShadows {
   public:
-    /// What measures so much shows its own light: the default error.
+    /// Size of a part that shows its own light: the default error.
     static constexpr double lit_as_px = 0.5;
 
     SelfShadows() = default;
     /// `octave_logs`: by node the logarithm to base 2 of the share for twice the size. `steps`: shares are
-    /// rounded to so many. `work`: that measuring them took.
+    /// rounded to 1 / steps. `work`: the cost of measuring them.
     SelfShadows(std::vector<float> octave_logs, int steps, std::uint64_t work)
         : octave_logs_(std::move(octave_logs)), steps_(steps), work_(work) {}
 
@@ -30,8 +29,8 @@ class SelfShadows {
     /// culled. 1 up to `lit_as_px`.
     double share(NodeId node, double size_px) const;
 
-    /// What stands for a node shows by its place: `outer`, the share of what is culled above it, if that is
-    /// less than 1; else its own if its detail, a length in errors, is at most 1.
+    /// The share of a stand-in by its place: `outer`, the share of a culled part above it, if that is less
+    /// than 1; else its node's own if its detail, a length in errors, is at most 1.
     double share_within(double outer, NodeId node, double detail, double error_px) const;
 
     /// Parts that rays went by to measure them.

@@ -17,7 +17,7 @@ double projected_area(const Affine& place, Vec3 direction);
 /// that what each adds is what is seen of it.
 class Shadow {
   public:
-    /// What one body covers.
+    /// The part of the grid that one body covers.
     struct Cover {
         double area = 0;      ///< of its shadow, exact or nearly so; in squares of the grid
         double samples = 0;   ///< in its shadow
@@ -35,13 +35,13 @@ class Shadow {
     /// Draws the image of a primitive. Not for planes.
     Cover draw(const Primitive& primitive, const Affine& place);
 
-    /// How near to the eye a point is: those with a smaller depth hide others.
+    /// Depth of a point from the eye: those with a smaller depth hide others.
     double depth(Vec3 point) const;
 
-    /// How many bodies a primitive is drawn as; 1 for most.
+    /// Number of bodies that a primitive is drawn as; 1 for most.
     static std::size_t bodies_of(const Primitive& primitive);
 
-    /// What drawing has cost so far.
+    /// Cost of drawing so far.
     std::uint64_t bodies_drawn() const { return bodies_drawn_; }
 
   private:

@@ -16,11 +16,11 @@ namespace graftal {
 namespace {
 
 constexpr int smoothings = 2;
-/// Of points in space, in the mean: those that lie behind others have none.
+/// Triangles for each point in space, in the mean: points that lie behind others have none.
 constexpr double triangles_a_point = 3;
-/// Of a point's cells and their faces, in moves of a point.
+/// Work of a point's cells and their faces, in moves of a point.
 constexpr std::uint64_t work_of_surface = 10;
-/// Of the work, what points may take: the rest is for their surface, and for a coarser one if need be.
+/// The points' share of the work: the rest is for their surface, and for a coarser one if need be.
 constexpr double share_of_work_for_points = 0.8;
 /// A surface of too many triangles tells how many more there would be: its cells grow by that, somewhat more,
 /// and no more than this at once.

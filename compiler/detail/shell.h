@@ -1,7 +1,6 @@
 #pragma once
 
-// Shells: what a part looks like from outside, where so many copies lie in each other that nobody could
-// unfold them.
+// Shells: looks of parts from outside, where too many copies lie in each other to unfold them.
 
 #include <cstdint>
 #include <optional>
@@ -19,7 +18,7 @@ struct ShellRequest {
     std::optional<MaterialId> material; ///< the finish of what names no material
     std::uint64_t most_work = PointLimits().work;
     std::vector<Rgb> inherited;  ///< by painter: the colour of what names no material
-    ShellStore* store = nullptr; ///< of what was made already; none: it is made anew
+    ShellStore* store = nullptr; ///< shells made already; null: each is made anew
 };
 
 /// The node as a closed surface, in the node's frame (Baked::representative_from_body reads node_from_body):

@@ -16,9 +16,9 @@ using CoarseStates = PointSystem::CoarseStates;
 constexpr double first_cells_across = 96, coarse_step = 2.5;
 /// A set this many cells wide is not worth a look inside.
 constexpr double least_cells_of_surface = 48;
-/// Of the points allowed, what is aimed at.
+/// Share of the allowed points that a grid aims at.
 constexpr double share_of_points = 0.45;
-/// What a finer grid takes is not certain: all the work suffices for so many runs, and a first look gets
+/// Runs for which all the work suffices, since the cost of a finer grid is not certain. A first look gets
 /// less.
 constexpr std::uint64_t runs_paid_for = 3, looks_a_run = 8;
 
@@ -27,13 +27,13 @@ class Growth {
   public:
     /// `flat`: in a plane.
     void add(double cell, double points, bool flat) {
-        // What is inside of a set in space is left out sooner or later, so that no growth that was seen can
-        // be relied on.
+        // Points inside of a set in space are left out at some time, so that no growth that was seen can be
+        // relied on.
         power_ = flat ? 2 : 2.6;
         last_cell_ = cell;
         last_points_ = std::max(1.0, points);
     }
-    /// The least cell with so many points.
+    /// The least cell that gives at most `points`.
     double finest_for(double points) const {
         return last_cell_ * std::pow(last_points_ / points, 1 / power_);
     }
@@ -63,7 +63,7 @@ class GridSearch {
         const double first = 2 * ball_.radius / first_cells_across;
         double cell = asked;
         if (asked < first) cell = refine(first, asked);
-        if (limited_) { // so all do that ask for a finer one than the last
+        if (limited_) { // all calls for a finer cell get this one
             set.finest_asked = 0;
             set.coarsest_asked = std::nextafter(std::min(cell, first), 0.0);
         }
@@ -117,7 +117,7 @@ class GridSearch {
 
     double coarsest() const { return 4 * ball_.radius; }
 
-    /// What is predicted is not certain: a cell may be too fine after all.
+    /// Makes the grid of a cell, or a coarser one: the prediction may be too fine after all.
     bool finish(double cell) {
         constexpr double coarser = 1.5;
         if (cell != failed_ && try_cell(cell)) return true;
@@ -131,7 +131,7 @@ class GridSearch {
                 if (cell > coarsest()) return false;
             }
         }
-        system_.add_large_parts(); // as many as there is room for
+        system_.add_large_parts(); // adds as many as there is room for
         return true;
     }
 

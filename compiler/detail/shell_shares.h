@@ -8,7 +8,7 @@
 
 namespace graftal {
 
-/// What a shell may take.
+/// Limits of one shell.
 struct ShellShare {
     std::uint64_t work = 0; ///< in moves of a point (shell_points.h)
     std::size_t triangles = 0;
@@ -21,9 +21,8 @@ class ShellShares {
     /// Keeps a reference to the graph.
     ShellShares(const CutGraph& cut, const std::vector<BakeRequest>& requests);
 
-    /// What the shell may take, where so many seconds (work.h) and triangles are left. The rest is for what
-    /// else is to be done, and a shell may take somewhat more work. Requires to be asked once for each shell
-    /// of the requests.
+    /// The limits of the shell, where these seconds (work.h) and triangles are left. The rest is for other
+    /// work, and a shell may take somewhat more. Requires to be asked once for each shell of the requests.
     ShellShare take(const BakeRequest& shell, double seconds_left, std::size_t triangles_left);
 
   private:

@@ -21,7 +21,7 @@ struct ShellSizes {
     }
 };
 
-/// Whether so many leaves cannot all lie side by side in a set of this detail across.
+/// True if this number of leaves cannot all lie side by side in a set of this detail across.
 bool is_crowded(double leaves, double detail, bool flat);
 
 } // namespace graftal

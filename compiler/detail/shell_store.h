@@ -11,9 +11,9 @@
 
 namespace graftal {
 
-/// The points of shells that were made already, for one graph: who tries several errors asks for the same
-/// grids again and again. What comes out is what point_set() gives, also how much work it was; only the time
-/// is saved. Keeps those that were asked for last. Threads may ask at once.
+/// The points of shells that were made already, for one graph: a try of several errors asks for the same
+/// grids again and again. Results are those of point_set(), with the work that it was; only time is saved.
+/// Keeps those that were asked for last. Threads may ask at once.
 class ShellStore {
   public:
     static constexpr std::size_t default_bytes = 64 << 20;
@@ -21,11 +21,11 @@ class ShellStore {
     /// `most_bytes`: kept at most, of all shells together.
     explicit ShellStore(std::size_t most_bytes = default_bytes) : most_bytes_(most_bytes) {}
 
-    /// As point_set(), never null. Requires the same graph each time.
+    /// point_set() of the node, never null. Requires the same graph each time.
     std::shared_ptr<const PointSet> points(const CutGraph& cut, NodeId node, std::uint32_t steps,
                                            double detail_per_unit, const PointLimits& limits);
 
-    /// How many shells had to be made.
+    /// Number of shells that had to be made.
     std::uint64_t made() const;
 
   private:

@@ -14,7 +14,7 @@ namespace graftal {
 
 namespace {
 
-/// How much more a measurement may cost for a primitive of several bodies.
+/// Factor on the cost of a measurement for a primitive of several bodies.
 constexpr std::size_t bodies_a_piece = 4;
 
 /// The axes of an icosahedron, then those of a dodecahedron, turned away from the coordinate axes and

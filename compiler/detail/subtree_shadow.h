@@ -11,11 +11,11 @@
 
 namespace graftal {
 
-/// How much is spent on a node.
+/// Effort for a node.
 struct Effort {
     static constexpr int coarse_grid = 64, fine_grid = 128;
 
-    std::size_t pieces = 0; ///< that its subtree is unfolded to
+    std::size_t pieces = 0; ///< parts of its unfolded subtree
     int grid = coarse_grid; ///< or fine_grid: rows of samples
 };
 
@@ -31,8 +31,8 @@ struct SubtreeShadow {
 /// and what is not unfolded that of its proxy.
 class ShadowMeasurer {
   public:
-    /// Keeps a reference to the graph, whose proxies may change between two measurements. Looks along so many
-    /// directions: 16 at most.
+    /// Keeps a reference to the graph, whose proxies may change between two measurements. Looks along
+    /// `direction_count` directions: 16 at most.
     ShadowMeasurer(const CutGraph& cut, std::size_t direction_count);
 
     const std::vector<Vec3>& along() const { return directions_; }

@@ -30,7 +30,7 @@ class CutShape {
                x.terminal_px == y.terminal_px;
     }
 
-    /// What a cell holds is in no edges.
+    /// True for a cell, whose parts are no edges.
     bool fixed(NodeId id) const { return cut_.nodes[id].sealed || cut_.nodes[id].cell; }
     double radius(NodeId id) const { return cut_.nodes[id].ball.radius; }
     const Affine* proxy(NodeId id) const {

@@ -14,11 +14,11 @@ namespace graftal {
 
 namespace {
 
-/// What holds a plane has no size: what lies under it never becomes small enough to end.
+/// Weight of endless detail: parts under a node with a plane never become small enough to end.
 constexpr double boundless = std::numeric_limits<double>::infinity();
 const Weights::Weight endless{boundless, boundless, boundless, boundless};
-/// Kinds may have so many times the edges of the graph in any case; where there are too many, the steps of
-/// their details get coarser by so much.
+/// Least limit of kinds, in edges of the graph; and the factor by which the steps of details get coarser
+/// where there are too many kinds.
 constexpr std::uint64_t visits_an_edge = 2;
 constexpr int coarser_grain = 4;
 /// Details beyond this are not told apart.
@@ -28,7 +28,7 @@ constexpr std::int32_t largest_step = 1 << 24;
 constexpr int whole_octaves = 11;
 /// Shells that a ray may go through, where a node is too large for one.
 constexpr double most_shells_a_ray = 64;
-/// What multiplies faster is never parted: a coarser shell of the whole is better than many of the parts.
+/// Dimension above which a shell is never parted: one coarser shell is better than many shells of parts.
 constexpr double most_parted_dimension = 4;
 /// Where leaves are counted to know how fast they multiply: far apart, since equal maps multiply them by
 /// leaps.
@@ -71,7 +71,7 @@ PieceKind Weights::normalised(PieceKind kind) const {
     if (!node.primitive && detail_step(kind) <= 1e-6) {
         kind.unit_step = PieceKind::tiny;
     } else if (node.primitive || (!node.cullable && !node.unending)) {
-        // The size decides how finely curved surfaces are meshed, and that grows slowly: a few kinds will do.
+        // The size decides how finely curved surfaces are meshed, and that grows slowly: few kinds suffice.
         const int octave = PieceKind::steps_an_octave;
         const double rounded = std::round(static_cast<double>(kind.unit_step) / octave) * octave;
         kind.unit_step = options_.px > 0 ? static_cast<std::int32_t>(rounded) : 0;
@@ -111,8 +111,8 @@ Weights::Weight Weights::of_primitive(const PieceKind& asked) const {
             price(primitive)};
 }
 
-/// Of a cell that is not cut. Cells are many, and hardly any is met twice: they are sooner weighed than
-/// remembered.
+/// Weight of a cell that is not cut. Cells are many, and hardly any is met twice: it is faster to weigh them
+/// than to remember them.
 Weights::Weight Weights::of_cell(const PieceKind& kind, const RunCell& cell) {
     Weight sum;
     for (const RunCell::Alike& alike : cell.alike) {
@@ -126,8 +126,8 @@ Weights::Weight Weights::of_cell(const PieceKind& kind, const RunCell& cell) {
     return sum;
 }
 
-/// What a singular map crushes coincides: along a line or in a plane there are about as many different leaves
-/// as it has lengths or squares of half the error (least_width.h, speck_mark()).
+/// Counts only different leaves under a singular map. Along a line or in a plane there are about as many as
+/// it has lengths or squares of half the error (least_width.h, speck_mark()).
 void Weights::squeeze(const PieceKind& kind, Weight& weight) const {
     constexpr double leaves_an_error = 4; // in two sizes, halves of the error apart
     constexpr double fewest_lengths = 8;
@@ -147,7 +147,7 @@ void Weights::squeeze(const PieceKind& kind, Weight& weight) const {
 void Weights::crowd(const PieceKind& kind, Weight& weight) const {
     if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return;
     const CutNode& node = cut_.nodes[kind.node];
-    if (node.sealed) weight.crowded = false; // what is crushed is baked as leaves
+    if (node.sealed) weight.crowded = false; // crushed parts are baked as leaves
     if (node.primitive || node.unbounded || node.sealed) return;
     const double detail = std::exp2(detail_step(kind) / PieceKind::steps_an_octave);
     if (!is_crowded(weight.leaves, detail, flat_[kind.node])) return;

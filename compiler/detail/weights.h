@@ -21,7 +21,7 @@ struct WeightOptions {
     /// Pixels of a detail of 1, which decide how finely curved surfaces are meshed; 0: as coarsely as can be.
     double px = 0;
     double error_px = 0; ///< Projection::error_px()
-    int grain = 1;       ///< that of other weights of this graph, which saves finding it
+    int grain = 1;       ///< grain of other weights of this graph, which saves finding it
     /// Kinds that take more, and more than the graph itself, are told apart less finely.
     std::uint64_t most_visits = usual_visits;
 
@@ -37,10 +37,10 @@ class Weights {
     struct Weight {
         double triangles = 0;
         double leaves = 0;
-        double curved_leaves = 0; ///< those whose meshes only come near them
+        double curved_leaves = 0; ///< leaves whose meshes only come near them
         double flat_bytes = 0;    ///< of the engine's memory, where every leaf is a placement of its own
-        /// Somewhere in it so many leaves lie in each other that nobody could unfold them: what becomes one
-        /// mesh becomes a shell (shell.h).
+        /// True if somewhere in it more leaves lie in each other than anybody could unfold: a mesh of it
+        /// becomes a shell (shell.h).
         bool crowded = false;
 
         Weight& operator+=(const Weight& other);
@@ -113,7 +113,7 @@ class Weights {
     std::vector<double> diameter_step_; ///< by node
     std::vector<double> cut_step_;      ///< by node, of cut_detail()
     std::vector<bool> flat_;            ///< by node
-    int grain_;                         ///< details are told apart by so many steps
+    int grain_;                         ///< steps of details that are not told apart
     std::map<std::pair<NodeId, std::uint32_t>, ShellSizes> shell_sizes_;
     std::vector<Known> known_;
     IdTable numbers_; ///< of known kinds

@@ -22,8 +22,8 @@ struct WorkRates {
     static constexpr double pieces = 3e6;        ///< pieces looked at to choose among them (choose_cut())
 };
 
-/// How many times as long steps through a graph of so many instances take: those of a small one are in the
-/// processor's caches, those of a large one are waited for. Measured on graphs of 1.1 and 1.8 million.
+/// Slowness of steps through a graph, as a factor: a small one is in the processor's caches, a large one is
+/// waited for. Measured on graphs of 1.1 and 1.8 million instances.
 inline double slowness_of_graph(std::uint64_t instances) {
     constexpr double at_home = 2e5, a_doubling = 0.4;
     return 1 + a_doubling * std::max(0.0, std::log2(static_cast<double>(instances) / at_home));
@@ -40,7 +40,7 @@ struct RayWork {
     static constexpr std::uint64_t stretched = 4; ///< more, for one that a map other than a similarity places
     static constexpr std::uint64_t widened = 24;  ///< a leaf that is drawn larger than it is
     static constexpr std::uint64_t crushed = 12;  ///< looked at in the world: no ray is taken into its frame
-    static constexpr std::uint64_t boxes = 1;     ///< that lie in one node, held against a ray
+    static constexpr std::uint64_t boxes = 1;     ///< boxes of one node, held against a ray
     static constexpr std::uint64_t boxes_of_packet = 3; ///< against all rays of a packet
     static constexpr std::uint64_t mesh_step = 4;       ///< a node or a triangle of a mesh's tree
     static constexpr std::uint64_t shaded = 4;          ///< a level of the path to what is seen

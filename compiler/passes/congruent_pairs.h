@@ -1,7 +1,7 @@
 #pragma once
 
-// Which objects are images of each other by an isometry: the check that symmetry and halves share. Candidates
-// are checked coinductively: a pair is congruent if its edges can be paired so that all child pairs are. So
+// Check, for symmetry and halves, which objects are images of each other by an isometry. Candidates are
+// checked coinductively: a pair is congruent if its edges can be paired so that all child pairs are. So
 // cycles are no obstacle. Sound; it may miss congruences where several edges of a node coincide. Its effort
 // is bounded.
 
@@ -39,7 +39,7 @@ struct NodePair {
 /// The 48 signed permutations of the axes, the identity first.
 const std::vector<Mat3>& cube_symmetries();
 
-/// Whether it is orthogonal, as nearly as congruence asks for.
+/// Whether a map is orthogonal, as nearly as congruence asks for.
 bool is_isometry(const Mat3& linear);
 
 /// Whether the map takes one ellipsoid, the image of the unit ball, to the other.
@@ -94,7 +94,7 @@ template<typename Shape> class CongruentPairs {
     Vec3 centre(std::uint32_t node) const { return centres_[node]; }
     const std::vector<NodePair>& pairs() const { return pairs_; }
     std::vector<NodePair>& pairs() { return pairs_; }
-    /// Of two edges: what finding all this has cost.
+    /// Comparisons of two edges: the cost of all this.
     std::uint64_t comparisons() const { return comparisons_; }
     bool out_of_comparisons() const { return comparisons_ > max_comparisons; }
 
@@ -188,7 +188,7 @@ template<typename Shape> class CongruentPairs {
         return index;
     }
 
-    /// As key() rounds.
+    /// True for a map that key() rounds to the identity.
     static bool is_nearly_identity(const Affine& a, double scale) {
         constexpr double half = 0.5e-6;
         for (int row = 0; row < 3; ++row)

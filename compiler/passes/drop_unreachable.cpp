@@ -10,7 +10,7 @@ namespace graftal {
 
 namespace {
 
-/// What the root leads to, by instances and terminals.
+/// Objects that the root leads to, by instances and terminals.
 std::vector<bool> reachable_objects(const Graph& graph) {
     std::vector<bool> reached(graph.objects.size(), false);
     std::vector<ObjectId> pending;

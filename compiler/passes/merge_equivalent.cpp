@@ -19,7 +19,7 @@ namespace graftal {
 
 namespace {
 
-/// How an instance places its master, as a number that equal placements share.
+/// Number of an instance's placement of its master; equal placements share it.
 using Label = std::uint32_t;
 
 /// All of an instance but its master.
@@ -40,7 +40,7 @@ double chance_sum(const Object& object) {
     return sum;
 }
 
-/// Of a sum; rounded, since the chances of equal objects may come by different ways.
+/// Share of a chance in a sum; rounded, since the chances of equal objects may come by different ways.
 double chance_share(double chance, double sum) {
     constexpr double digits = 1e12;
     return sum > 0 && std::isfinite(sum) ? std::round(chance / sum * digits) / digits : chance;
@@ -55,7 +55,7 @@ Placement placement_of(Instance instance, std::optional<double> terminal_px, dou
     return placement;
 }
 
-/// Of the shape alone.
+/// Placement of the shape alone.
 Placement place_of(const Instance& instance) {
     const Affine& map = instance.parent_from_child;
     Placement placement;
@@ -100,10 +100,10 @@ struct Edges {
     }
 };
 
-/// What objects must have in common to be equal.
+/// Properties that objects must have in common to be equal.
 enum class Alike {
-    in_all,  ///< what they unfold to
-    in_shape ///< where that is: neither its colours and materials, nor terminals, nor chances
+    in_all,  ///< all that they unfold to
+    in_shape ///< the place of that: not colours, materials, terminals or chances
 };
 
 Edges edges_of(const Graph& graph, Alike alike) {

@@ -21,7 +21,7 @@ namespace {
 
 using Bounds = std::vector<ObjectBounds>;
 
-/// Of a pass that asks for no bounds.
+/// Runs a pass that asks for no bounds.
 template<Rewritten (*pass)(Graph)> Rewritten boundless(Graph graph, const Bounds&) {
     return pass(std::move(graph));
 }

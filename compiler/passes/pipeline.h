@@ -51,8 +51,8 @@ struct BoundedGraph {
 };
 
 /// Runs the passes in order, carries over what is known, and verifies the graph after each; throws, naming
-/// the pass, if one broke it. Requires that `stop_after` is empty or names a pass of these. The meter counts
-/// objects before each pass; null: nobody does.
+/// the pass, if one broke it. Requires that `stop_after` is empty or names a pass of these. The meter, if
+/// any, counts objects before each pass.
 BoundedGraph run_passes(std::span<const Pass> passes, BoundedGraph graph, const PipelineOptions& options = {},
                         std::vector<PassTime>* times = nullptr, WorkMeter* meter = nullptr);
 

@@ -41,7 +41,7 @@ GraphStep followed(const Renumbering& renumbering, const GraphStep& step, const 
     const auto places_alike = [&](const Instance& instance) {
         return instance.parent_from_child == old.parent_from_child && instance.tint == old.tint;
     };
-    // Of several that are alike the same in their order: equal objects may have theirs in different orders.
+    // Instances that are alike keep their order: equal objects may have theirs in different orders.
     std::size_t alike_before = 0;
     for (std::uint32_t i = 0; i < step.instance; ++i)
         alike_before += places_alike(before.instances[i]) &&

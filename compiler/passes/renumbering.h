@@ -15,7 +15,7 @@ namespace graftal {
 struct Renumbering {
     static constexpr ObjectId dropped = UINT32_MAX;
 
-    /// What a pass took out of an object and gave to those who use it.
+    /// Attributes that a pass took out of an object and gave to the instances that use it.
     struct Taken {
         Affine parent_from_rest;
         Tint tint;
@@ -25,7 +25,7 @@ struct Renumbering {
     std::vector<ObjectId> now;    ///< by old object: the new one that draws it, or `dropped`
     std::vector<ObjectId> origin; ///< by new object: the old one that it was, or was a part of
     std::vector<Taken> taken;     ///< by old object; empty if nothing was taken out of any
-    /// By new object that is not its origin any more but the union of these old ones, as they lie.
+    /// Old objects, as they lie, by the new object that is their union and not its origin any more.
     std::map<ObjectId, std::vector<ObjectId>> united;
 
     /// Every object is what it was. Requires that the graphs have equally many.

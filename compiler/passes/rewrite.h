@@ -1,6 +1,6 @@
 #pragma once
 
-// What passes that drop and renumber objects share.
+// Helpers of passes that drop and renumber objects.
 
 #include <cstdint>
 #include <optional>
@@ -44,7 +44,7 @@ template<typename T> std::vector<std::uint32_t> compact(std::vector<T>& all, con
     return new_index;
 }
 
-/// By new index the old one: the first that became it.
+/// Old indices by new index: the first that became it.
 inline std::vector<std::uint32_t> origins(const std::vector<std::uint32_t>& new_index, std::size_t count) {
     std::vector<std::uint32_t> origin(count);
     for (std::size_t old = new_index.size(); old-- > 0;)

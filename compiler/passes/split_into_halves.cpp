@@ -17,7 +17,7 @@ namespace graftal {
 namespace {
 
 constexpr std::size_t max_checks = 20'000;
-/// With fewer instances a half would be a single one.
+/// Least instances of an object to be split: with fewer a half would be a single one.
 constexpr std::size_t least_instances = 4;
 
 /// Fills the box, one axis for each of the box's.
@@ -85,7 +85,7 @@ class GraphShape {
                bounds_[a].unbounded == bounds_[b].unbounded;
     }
 
-    /// What a run holds is in no instances.
+    /// True for a run, whose parts are no instances.
     bool fixed(ObjectId id) const { return graph_.objects[id].run != nullptr; }
     double radius(ObjectId id) const { return std::max(bounds_[id].ball.radius, 0.0); }
     const Affine* proxy(ObjectId id) const {
@@ -101,7 +101,7 @@ class GraphShape {
     std::vector<Affine> proxies_;    ///< by object
 };
 
-/// By instance of an object whether it belongs to the first half; empty if the object has no halves.
+/// True, by instance of an object, for those of the first half; empty if the object has no halves.
 using Halves = std::vector<bool>;
 
 class Halving {

@@ -8,11 +8,11 @@
 
 namespace graftal {
 
-/// Where an unending object is its own image under a half turn or mirror that leaves none of its instances in
-/// place, its instances of unending masters become two parts (graph.h, "Levels"), images of each other: the
-/// choice of the cut gets finer, meshes half as large. What ends stays with the whole, which draws it where
-/// levels end. Bounded effort (congruent_pairs.h).
-/// Requires bounds of all objects. Ensures: unfolds to the same; a second run changes nothing.
+/// Splits an unending object that is its own image under a half turn or mirror that leaves none of its
+/// instances in place. Its instances of unending masters become two parts (graph.h, "Levels"), images of
+/// each other. The choice of the cut gets finer, meshes half as large. Ending instances stay with the whole,
+/// which draws it where levels end. Bounded effort (congruent_pairs.h). Requires bounds of all objects.
+/// Ensures: unfolds to the same; a second run changes nothing.
 Rewritten split_into_halves(Graph graph, const std::vector<ObjectBounds>& bounds);
 
 } // namespace graftal

@@ -6,7 +6,7 @@
 
 namespace graftal {
 
-/// What POV-Ray 3.7 needs, in bytes: measured on scenes of 60,000 placements and 200,000 triangles of each
+/// Memory of POV-Ray 3.7, in bytes: measured on scenes of 60,000 placements and 200,000 triangles of each
 /// kind (docs/benchmarks/memory.md).
 struct PovrayCosts {
     static constexpr double base = 17.6e6;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a cut holds: bodies, their placements, and the textures that these share.
+// Parts of a cut: bodies, their placements, and the textures that these share.
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where POV-Ray's text goes, and what goes with it.
+// POV-Ray's text, where it goes, and the files beside it.
 
 #include <functional>
 #include <memory>
@@ -35,7 +35,7 @@ struct PovrayOptions {
     bool include = false;   ///< `.inc`: declares the object in model coordinates, and draws nothing
     std::string file_name;  ///< of the `.inc`, for the comment that says how to use it, and its pictures
     bool progress = false;  ///< emits `#debug` marks that the driver reads as parse progress
-    /// What the `.inc` declares, and what all its names begin with; "": by the model's name. Requires an
+    /// Name that the `.inc` declares, with which all its names begin; "": by the model's name. Requires an
     /// is_model_identifier().
     std::string identifier = {};
     std::optional<LightListSize> lights = {}; ///< of soft light; nothing: by the view's quality

@@ -8,7 +8,7 @@
 
 namespace graftal {
 
-/// What POV-Ray has for a primitive, and what that costs it.
+/// POV-Ray's form of a primitive, and its cost.
 struct PovrayPrimitive {
     /// SDL of the primitive, up to the modifiers.
     std::string (*text)(const Primitive&);
@@ -19,8 +19,8 @@ struct PovrayPrimitive {
     bool (*stays_of_its_kind)(const Mat3& linear) = nullptr;
     /// Memory of one that is placed, without a matrix, in bytes (docs/benchmarks/memory.md).
     double (*bytes)(const Primitive&);
-    /// Of a primitive that is declared once and then placed: what the declaration takes, in bytes. Null: each
-    /// is written where it is placed.
+    /// Bytes of the declaration of a primitive that is declared once and then placed. Null: each is written
+    /// where it is placed.
     double (*declared_bytes)(const Primitive&) = nullptr;
     /// Whether maps leave it of its kind so seldom that a matrix counts beforehand.
     bool mostly_needs_matrix = false;

@@ -21,8 +21,8 @@ struct RunPlacements {
     std::uint16_t colour = 0;
     Affine world_from_run;
     std::array<std::uint32_t, RunShape::count> body{}; ///< by RunShape::index()
-    /// Of the range's items the bodies and the balls, in turn: what is drawn elsewhere, or not in sight. Null
-    /// if nothing is.
+    /// True for bodies and balls of the range's items, in turn, that are drawn elsewhere or not in sight.
+    /// Null if none are.
     std::shared_ptr<const std::vector<bool>> left_out;
 };
 
@@ -37,7 +37,7 @@ template<typename Visit> void for_each_part(const RunPlacements& parts, const Vi
     }
 }
 
-/// How many parts these are.
+/// Number of parts.
 std::uint64_t part_count(const RunPlacements& parts);
 
 } // namespace graftal

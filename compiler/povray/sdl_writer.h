@@ -43,7 +43,7 @@ class SdlWriter {
     SdlWriter& in_pieces(std::string_view text);
     /// Makes room for `bytes` more, at most `capacity`.
     char* room(std::size_t bytes);
-    /// What was written there, up to `end`, counts.
+    /// Takes the bytes that were written there, up to `end`.
     SdlWriter& written(const char* end);
 
     static constexpr std::size_t capacity = 128 * 1024;

@@ -7,7 +7,7 @@
 
 namespace graftal {
 
-/// What of the drawn things decides on POV-Ray's units.
+/// Extents of the drawn things that decide on POV-Ray's units.
 struct DrawnExtent {
     Box bounds;                                              ///< planes aside
     double largest_part = 0;                                 ///< longest side of the box of one placement

@@ -48,15 +48,15 @@ Rgb colour_of_path(const Graph& graph, Rolls& rolls) {
     return tint.over(base);
 }
 
-/// How different two colours look, about 0 to 1: cube roots are near to even steps for the eye, and green
-/// counts most for lightness.
+/// Contrast of two colours to the eye, about 0 to 1: cube roots are near to even steps, and green counts
+/// most for lightness.
 double contrast(Rgb a, Rgb b) {
     const Rgb difference(std::cbrt(a.r) - std::cbrt(b.r), std::cbrt(a.g) - std::cbrt(b.g),
                          std::cbrt(a.b) - std::cbrt(b.b));
     return std::sqrt(glm::dot(Rgb(0.3, 0.55, 0.15), difference * difference));
 }
 
-/// What the less visible fifth of the colours has at most.
+/// Largest contrast of the less visible fifth of the colours.
 double low_contrast(const std::vector<Rgb>& colours, Rgb background) {
     std::vector<double> contrasts;
     for (const Rgb& colour : colours)
@@ -70,7 +70,7 @@ struct Shades {
     Rgb zenith, horizon;
 };
 
-/// Light backgrounds look better where both will do.
+/// Light backgrounds look better where both are possible.
 constexpr double preference_for_light = 4;
 
 Shades choose(const std::vector<Rgb>& colours, Shades light, Shades dark) {

@@ -6,8 +6,8 @@
 
 namespace graftal {
 
-/// Of any number of points those that reach farthest, in a thousand directions spread evenly over the sphere:
-/// their hull falls short of the hull of all by 0.3 % of its size at most, however many there were.
+/// The farthest of any number of points, in a thousand directions spread evenly over the sphere: their hull
+/// falls short of the hull of all by 0.3 % of its size at most.
 class Extremes {
   public:
     Extremes();
@@ -21,8 +21,7 @@ class Extremes {
     bool empty_ = true;
 };
 
-/// What the points sweep over as they turn about the vertical axis through `axis`: corners of a body that
-/// holds their circles.
+/// Corners of a body that holds the circles of points as they turn about the vertical axis through `axis`.
 std::vector<Vec3> revolved(const std::vector<Vec3>& points, Vec3 axis);
 
 } // namespace graftal

@@ -13,12 +13,12 @@ namespace graftal {
 
 namespace {
 
-/// Of the picture's width or height, on each side. Of exactly a twentieth, rows of pixels would run along the
-/// edges of figures at halves and quarters, where rounding decides what a ray meets, in each engine by
-/// itself.
+/// Share of the picture's width or height, on each side. With exactly a twentieth, rows of pixels would run
+/// along the edges of figures at halves and quarters. There rounding decides what a ray meets, in each
+/// engine by itself.
 constexpr double margin = 0.05 + 0x1p-32;
 constexpr double automatic_angle_deg = 36; // across the longer side of the picture
-constexpr double widest_angle_deg = 90;    // that fitting may choose
+constexpr double widest_angle_deg = 90;    // limit for fitting
 constexpr double close_up_angle_deg = 60;  // where the eye is too near to fit
 constexpr double azimuth_deg = 28;         // of the eye, from the front towards the right
 constexpr double elevation_deg = 20;       // of the eye
@@ -49,8 +49,8 @@ struct Subject {
     Vec3 world(Vec3 local) const { return centre + scale * local; }
 };
 
-/// What nobody knows of the bounds is rounded off: a symmetric model is seen from its very middle, and from
-/// one place by both engines, of which POV-Ray reads 12 digits. Rays along edges then meet them in both.
+/// A place without the digits that bounds do not give. A symmetric model is seen from its very middle, and
+/// from one place by both engines: POV-Ray reads 12 digits. So rays along edges meet them in both.
 Vec3 without_noise(Vec3 place, const Subject& subject) {
     const double grain = place_grain * std::exp2(std::ceil(std::log2(subject.scale)));
     for (int axis = 0; axis < 3; ++axis) {
@@ -167,7 +167,7 @@ class EyeCentring {
         return most + least;
     }
 
-    /// Of a million corners few can be outermost while the eye stays near: only these are looked at again.
+    /// Finds the few corners that can be outermost while the eye stays near. Only these are looked at again.
     void look_from(Vec3 eye) {
         looked_from_ = eye;
         outermost_.clear();
@@ -210,7 +210,7 @@ Vec3 nearest_eye(const Camera& camera, const Subject& subject, Frustum slope) {
     return eye;
 }
 
-/// How far the eye must be from `target` (local), which stays in the middle of the picture.
+/// Least distance of the eye from `target` (local), which stays in the middle of the picture.
 double nearest_distance(const Camera& camera, const Subject& subject, Vec3 target, Frustum slope) {
     double distance = 0;
     for (const Vec3 corner : subject.corners) {

@@ -25,11 +25,11 @@ bool is_figure(const Box& bounds);
 /// `over` taking precedence over `model`, field by field. An angle or a width says which projection is meant.
 CameraSetting merge(const CameraSetting& model, const CameraSetting& over);
 
-/// The camera that fulfils the setting and shows the whole of the bounds, or of the outline in them: as near,
-/// or as wide, as leaves a margin of 5 % on either side of the tighter dimension. Only where location and
-/// angle (or width) are both given, or the eye is so near that more than 90 degrees would be needed, part of
-/// the model may be out of view. The outline of a figure, which the box shows exactly, counts only if the
-/// camera is going to be `turning` round it.
+/// The camera that fulfils the setting and shows the whole of the bounds, or of the outline in them: as
+/// near, or as wide, as leaves a margin of 5 % on either side of the tighter dimension. Part of the model
+/// may be out of view only in two cases. Either location and angle (or width) are both given, or the eye is
+/// so near that it needs more than 90 degrees. The outline of a figure, which the box shows exactly, counts
+/// only if the camera is going to be `turning` round it.
 Camera frame_camera(const CameraSetting& setting, const Box& bounds, const Outliner& outliner, ImageSize size,
                     bool turning = false);
 

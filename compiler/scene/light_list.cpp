@@ -72,7 +72,7 @@ void list_picture(const SkyLight& sky, unsigned count, bool above_only, std::vec
 } // namespace
 
 LightListSize list_size(Quality quality) {
-    // POV-Ray's time grows as their number does. 16 show bands, 32 will do, 64 looks like 512.
+    // POV-Ray's time grows as their number does. 16 show bands, 32 are enough, 64 look like 512.
     return by_quality<LightListSize>(quality, {4, 16, 9}, {8, 40, 32}, {16, 160, 128});
 }
 
@@ -90,7 +90,7 @@ std::vector<Light> listed_lights(const View& view, const LightListSize& size) {
         list_picture(*view.sky_light, size.dome, view.ground.has_value(), list);
         return list;
     }
-    // What shines from below counts less than the sky, and not at all through a ground.
+    // Light from below counts less than the sky, and not at all through a ground.
     const unsigned from_below = view.ground ? 0 : size.dome / 5;
     list_zone(*view.sky_light, 0, 1, size.dome - from_below, list);
     if (from_below > 0) list_zone(*view.sky_light, -1, 0, from_below, list);

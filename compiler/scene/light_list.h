@@ -6,7 +6,7 @@
 
 namespace graftal {
 
-/// How many lights stand for light from a sun's disc, from all directions, and from a lamp's area. Positive.
+/// Numbers of lights for the light of a sun's disc, of all directions, and of a lamp's area. Positive.
 struct LightListSize {
     unsigned disc = 1, dome = 1, area = 1;
     bool operator==(const LightListSize&) const = default;

@@ -89,7 +89,7 @@ class Outline {
         return longest;
     }
 
-    /// The same as unfold_last() for a range of a run, whose items are not unfolded further.
+    /// unfold_last() for a range of a run, whose items are not unfolded further.
     bool unfold_last_range() {
         const Piece piece = pieces_.back();
         const RunBounds& run = *bounds_[piece.object].run;

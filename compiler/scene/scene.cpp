@@ -24,8 +24,8 @@ Vec3 from_camera(const Camera& camera, Vec3 v) {
     return v.x * camera.right + v.y * camera.up - v.z * camera.direction;
 }
 
-/// A model without depth takes one light at right angles, so that a colour c is drawn as ambient * c +
-/// diffuse * light * c = c. The light is shadowless: a highlight would lie over the whole of it.
+/// A model without depth takes one light at right angles: a colour c is drawn as ambient * c + diffuse *
+/// light * c = c. The light is shadowless: a highlight would lie over the whole of it.
 std::vector<Light> flat_lights(const Camera& camera, int axis) {
     const Material ordinary;
     Vec3 towards(0.0);
@@ -46,8 +46,8 @@ std::vector<Light> solid_lights(const Camera& camera, bool over_ground) {
             {.location = fill, .sun = true, .rgb = {0.27, 0.29, 0.33}, .shadowless = true}};
 }
 
-/// Of a lamp that looks along the way: one level, and one upwards; x is level for a lamp that looks up or
-/// down.
+/// Axes of a lamp that looks along the way: one level, and one upwards; x is level for a lamp that looks up
+/// or down.
 AxesAcross lamp_axes(Vec3 way) {
     const Vec3 direction = glm::normalize(way);
     const Vec3 level = glm::cross(direction, Vec3(0, 1, 0));

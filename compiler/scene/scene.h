@@ -1,7 +1,7 @@
 #pragma once
 
-// What a renderer needs besides geometry: a camera, lights and a sky, all in world space (right-handed,
-// y up). Decided here from the model's scene statements and its bounds; engines only follow.
+// The scene besides geometry: a camera, lights and a sky, all in world space (right-handed, y up). Decided
+// here from the model's scene statements and its bounds; engines only follow.
 
 #include <functional>
 #include <optional>
@@ -35,13 +35,13 @@ struct Camera {
     double angle_deg = 40; ///< horizontal angle of view; perspective only
     double width = 1;      ///< of the view in scene units; orthographic only
 
-    /// Pixels per scene unit at the point, for a picture `width_px` wide: what a length at right angles to
-    /// the line of sight measures, at most (towards the corners of a perspective picture it is drawn out
-    /// radially). Infinity at or behind the eye of a perspective camera.
+    /// Pixels per scene unit at the point, for a picture `width_px` wide, at most: for a length at right
+    /// angles to the line of sight. (Towards the corners of a perspective picture it is drawn out radially.)
+    /// Infinity at or behind the eye of a perspective camera.
     double pixels_per_unit(Vec3 point, int width_px) const;
 };
 
-/// What a camera with a lens has besides: everything at one depth is sharp.
+/// A camera's lens: everything at one depth is sharp.
 struct Lens {
     double radius = 0; ///< 0: all is sharp
     double depth = 1;  ///< along the camera's direction
@@ -63,15 +63,15 @@ struct Light {
     bool is_area() const { return !sun && !shadowless && a != Vec3(0.0); }
 };
 
-/// How much work goes into what converges.
+/// Work that goes into pictures that converge.
 enum class Quality { draft, normal, best };
 
 template<typename Value> constexpr Value by_quality(Quality quality, Value draft, Value normal, Value best) {
     return quality == Quality::draft ? draft : quality == Quality::normal ? normal : best;
 }
 
-/// The background in a direction d (unit) runs from `horizon`, where dot(d, axis) <= from, to `zenith`,
-/// where dot(d, axis) >= to, linearly in that product.
+/// The background in a direction d (unit) is `horizon` where dot(d, axis) <= from, and `zenith` where dot(d,
+/// axis) >= to. Between them it is linear in that product.
 struct Sky {
     Rgb zenith{1.0};
     Rgb horizon{1.0}; ///< equal to zenith: a plain background
@@ -101,9 +101,9 @@ struct View {
     Film film;
     Quality quality = Quality::normal;
 
-    /// Of the direction of a ray (unit) that meets nothing.
+    /// Light from the direction of a ray (unit) that meets nothing.
     Rgb background(Vec3 direction) const;
-    /// What a material's `ambient` is a share of: the sky's light on paper, or 1 without such a sky.
+    /// Light of which `ambient` is a share: the sky's light on paper, or 1 without a sky of light.
     Rgb ambient_light() const;
     /// Whether light comes from more than points: from discs, or from all directions.
     bool has_soft_light() const;

@@ -17,9 +17,9 @@ Sky studio_backdrop(const View& view);
 /// Air over the ground of such a picture, which hides where the ground ends. Requires the background.
 std::optional<Haze> air_over_ground(const View& view, const Box& bounds);
 
-/// What the model casts its shade on where it has no ground: a disc under it, of the colour that shows the
-/// background where nothing stands in the light. Nothing where the eye lies in the bounds or sees no such
-/// disc from above. Requires lights, sky and background.
+/// The catcher of the model's shade where it has no ground: a disc under it, of the colour that shows the
+/// background where nothing stands in the light. Nothing where the eye lies in the bounds or sees no disc
+/// from above. Requires lights, sky and background.
 std::optional<ShadowCatcher> catcher_below(const View& view, const Box& bounds);
 
 } // namespace graftal

@@ -10,11 +10,11 @@ namespace graftal {
 
 struct Sight {
     Box bounds;        ///< a stand-in where there is nothing but planes
-    Outliner outliner; ///< of it, while the model lives; nothing: the bounds are all that is known
+    Outliner outliner; ///< outlines it while the model lives; nothing: only the bounds are known
 };
 
-/// What is to be seen of a model: an unending one by its levels, if it has a number of them (`steps`) that
-/// can be looked at part by part, else its limit set.
+/// The visible part of a model: the levels of an unending one, if they are limited (`steps`) and can be
+/// looked at part by part, else the limit set.
 Sight sight_of(const AnalysedModel& model, std::optional<unsigned> steps);
 
 /// The view of what is seen so, without zoom and shared framing.

@@ -19,14 +19,14 @@
 
 namespace graftal {
 
-/// What a session holds on to.
+/// Values that a session keeps.
 enum class Keep {
     everything, ///< the last value of each stage
-    for_views,  ///< what the next view needs: for animations
+    for_views,  ///< values for the next view: for animations
     nothing,    ///< each value only until the next stage has used it: for a single picture
 };
 
-/// How often each stage ran.
+/// Number of runs of each stage.
 struct StageRuns {
     std::uint64_t source = 0;
     std::uint64_t parsed = 0; ///< texts of all files, each by itself
@@ -124,7 +124,7 @@ class Session {
         PrepareOptions options;
         bool operator==(const PrepareKey&) const = default;
     };
-    /// What the work gives; null, with a failed status, if it was cancelled, or after an error if it would
+    /// Value of the work. Null, with a failed status, if it was cancelled; null after an error if it would
     /// take more than is allowed.
     template<typename Value, typename Work>
     std::shared_ptr<const Value> unless_ended(Compilation& compilation, const Work& work);
@@ -159,7 +159,7 @@ class Session {
     ParsedFiles parsed_;
     Memo<LowerKey, LoweredModel> lowered_;
     SourceMap sources_;                       ///< of the last lowering
-    std::map<std::string, FileStamp> meshes_; ///< that it read, too
+    std::map<std::string, FileStamp> meshes_; ///< meshes that the last lowering read
     bool reads_steps_ = true;                 ///< the last lowering: its value depends on steps
     Memo<AnalyseKey, AnalysedModel> analysed_;
     Memo<ViewKey, ViewedModel> viewed_;

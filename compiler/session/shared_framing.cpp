@@ -81,7 +81,7 @@ Camera SharedFraming::frame(const CameraSetting& setting) const {
         setting, bounds_, [this](const auto&) { return outline_; }, size_, turning_);
 }
 
-/// What the setting leaves open is as in the first frame.
+/// Fills in what the setting leaves open as in the first frame.
 CameraSetting SharedFraming::completed(CameraSetting setting) const {
     if (!setting.location) {
         setting.location = first_.location;

@@ -14,7 +14,7 @@ class StageClock {
   public:
     explicit StageClock(std::vector<StageTime>& times) : times_(times) {}
 
-    /// What goes wrong with it names the stage.
+    /// Runs the work of a stage. A fault in it names the stage.
     template<typename Work> auto run(const char* stage, const Work& work) {
         const auto begin = std::chrono::steady_clock::now();
         try {

@@ -18,7 +18,7 @@ struct ViewOptions {
     bool shaped = false; ///< to suit the model, of about as many pixels (shaped_size())
     CameraOverride camera;
     ZoomRequest zoom;
-    /// Of an animation, whose frames are framed together; null: the model is framed by itself.
+    /// Framing of an animation, whose frames are framed together; null: the model is framed by itself.
     std::shared_ptr<const SharedFraming> framing;
     double turn_deg = 0; ///< with a framing: how far the camera has gone round the model
     Quality quality = Quality::normal;

@@ -59,7 +59,7 @@ Span span_of(const Graph& graph, const GraphStep& step) {
     return span.known() ? span : object.span;
 }
 
-/// What one way around does to sizes.
+/// The growth of sizes by one way around, in words.
 std::string growth_around(const Contraction& contraction) {
     const auto instances = static_cast<double>(contraction.worst_cycle.size());
     const double factor = std::pow(contraction.rate(), instances);
@@ -102,7 +102,7 @@ View view_of(const AnalysedModel& model, std::optional<unsigned> steps, const Vi
     return own.view(model, options);
 }
 
-/// What frames an object as if it were the model; the camera that the model gives is meant for its root.
+/// A function that frames an object as if it were the model. The model's camera is meant for its root.
 FrameObject framing_of(const AnalysedModel& model, std::optional<unsigned> steps,
                        const ViewOptions& options) {
     return [&model, steps, &options](ObjectId object, unsigned used_levels) {

@@ -42,8 +42,8 @@ std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<A
 /// True, after an error, for a model that is not proved to converge.
 bool refuse_divergent(const AnalysedModel& model, Diagnostics& diagnostics);
 
-/// The levels of recursion that are drawn, where the command line asks for so many. The steps of an L-system
-/// are spent already; what it places recurs as its own file says.
+/// The levels of recursion that are drawn, where the command line asks for `asked`. The steps of an L-system
+/// are spent already; an object that it places recurs as its own file says.
 std::optional<unsigned> levels_of(const AnalysedModel& model, std::optional<unsigned> asked);
 
 /// The model with a camera, and under a zoom with a new root. Nothing after an error. Requires a model that

@@ -103,7 +103,7 @@ Json bounds_json(const AnalysedModel& model) {
     return {{"min", vector_json(bounds.box.min)}, {"max", vector_json(bounds.box.max)}};
 }
 
-/// By the name of the model.
+/// Families by the name of their model.
 Json families_json(const Derivation& derivation) {
     Json families = Json::object();
     for (const FamilyReport& family : derivation.families)

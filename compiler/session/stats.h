@@ -9,11 +9,11 @@
 
 namespace graftal {
 
-/// What `graftal stats` says of a model that is drawn to so many levels (levels_of()): one JSON object, its
-/// keys in a fixed order. `sources`: those that the model was made of.
+/// The text of `graftal stats --json` for a model that is drawn to `steps` levels (levels_of()): one object,
+/// its keys in a fixed order. `sources`: those that the model was made of.
 std::string stats_json(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources);
 
-/// The same for people, one line a key.
+/// The text of `graftal stats` for people, one line a key.
 std::string stats_text(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources);
 
 /// A key of stats_text(), without the name of a family: "contraction rate", "families members".

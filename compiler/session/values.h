@@ -29,7 +29,7 @@ struct StageTime {
     double seconds = 0;
 };
 
-/// What a caller learns besides a value: the findings, and the texts that they point into.
+/// Findings that a caller gets besides a value, and the texts that they point into.
 struct Compilation {
     SourceMap sources;
     Diagnostics diagnostics;
@@ -51,7 +51,7 @@ struct LoweredModel {
     double work_seconds = 0; ///< counted (support/stage_work.h)
 };
 
-/// Of a graph: its objects, and its instances, which are its edges.
+/// Size of a graph: its objects, and its instances, which are its edges.
 struct GraphSize {
     std::size_t objects = 0;
     std::size_t instances = 0;

@@ -142,7 +142,7 @@ std::string_view without_numbers(std::string_view head) {
     return head;
 }
 
-/// How well a master's name fits, 0 for not at all.
+/// Fit of a master's name, 0 for none at all.
 int fit(std::string_view master, std::string_view name) {
     if (name.empty() || master == name) return 4;
     const std::size_t end = std::min(master.find('('), master.size());

@@ -49,9 +49,9 @@ struct GraphPath {
     }
 };
 
-/// Finds the address. A name fits a master of that name, else one whose name ends in it after a dot (of an
-/// imported model), else one that has it in front of its arguments. Objects of a single instance that no name
-/// fits are passed through. What repeats for ever ends where the graph does. Errors go to `diagnostics`.
+/// Finds the address. A name fits a master of that name; else one whose name ends in it after a dot (of an
+/// imported model); else one that has it in front of its arguments. Objects of one instance that no name
+/// fits are passed through. Endless repetition ends where the graph does. Errors go to `diagnostics`.
 std::optional<GraphPath> find_path(const Graph& graph, const Address& address, Diagnostics& diagnostics);
 
 } // namespace graftal

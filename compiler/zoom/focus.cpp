@@ -53,7 +53,7 @@ Vec3 pulled_down(const Graph& graph, const GraphPath& path, Vec3 direction) {
     return direction;
 }
 
-/// Of the item that lies nearest to a point, a point of its side that is farthest towards the eye.
+/// A point of the item that lies nearest to `point`: on its side, farthest towards the eye.
 Vec3 surface_of_run(const Run& run, Vec3 point, Vec3 to_eye) {
     Vec3 seen(0.0);
     double nearest = std::numeric_limits<double>::infinity();
@@ -77,7 +77,7 @@ Vec3 surface_of_run(const Run& run, Vec3 point, Vec3 to_eye) {
     return seen;
 }
 
-/// By object: whether a path along maps that can be inverted leads on from it for ever.
+/// True, by object, if a path along maps that can be inverted leads on from it for ever.
 std::vector<bool> endless_objects(const Graph& graph) {
     const std::size_t count = graph.objects.size();
     std::vector<std::vector<ObjectId>> users(count);
@@ -151,7 +151,7 @@ class PointWalk {
     };
     static constexpr std::size_t most_visits = 64;
 
-    /// Of a model that goes on for ever the way never ends; a point asked for lies where it lies.
+    /// True if the way ends: not in an endless model, nor where a point is asked for.
     bool ends_in_primitive() const { return nearest_ && !endless_[object_]; }
 
     void take(std::uint32_t instance) {

@@ -13,8 +13,8 @@ namespace graftal {
 /// The point that a zoom is about, and the objects on the way to it.
 struct Focus {
     GraphPath path;
-    std::vector<Vec3> points; ///< the point in the frame of the object before step i; of an endless path so
-                              ///< many that the rest repeats
+    std::vector<Vec3> points; ///< the point in the frame of the object before step i; an endless path
+                              ///< has those that all further steps repeat
     double error = 0;         ///< in units of the last frame; 0 if the path is endless
 
     Vec3 at(std::size_t i) const {

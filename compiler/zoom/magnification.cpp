@@ -72,7 +72,7 @@ std::optional<Magnification> Magnification::parse(std::string_view text) {
     if (e == std::string_view::npos) return positive(parse_number(text));
     const auto exponent = parse_exponent(text.substr(e + 1));
     if (!exponent || std::abs(*exponent) > most_decimal_exponent) return std::nullopt;
-    // What is a double is read as one, to the last bit.
+    // A number that a double can hold is read as one, to the last bit.
     constexpr std::int64_t safe = 290;
     if (std::abs(*exponent) <= safe) return positive(parse_number(text));
     const auto mantissa = positive(parse_number(text.substr(0, e)));

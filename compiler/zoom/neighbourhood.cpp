@@ -28,7 +28,7 @@ double reach_of(const Affine& a, const Ball& ball) {
     return glm::length(a(ball.centre)) + norm(a.linear) * (glm::length(ball.centre) + ball.radius);
 }
 
-/// How far apart two maps bring a point of the ball, at most.
+/// Largest distance between the places where two maps bring a point of the ball.
 double difference(const Affine& a, const Affine& b, const Ball& ball) {
     const Affine d{a.linear - b.linear, a.translation - b.translation};
     return glm::length(d(ball.centre)) + norm(d.linear) * std::max(ball.radius, 0.0);

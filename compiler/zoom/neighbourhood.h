@@ -19,13 +19,12 @@ struct NearPiece {
     double error = 0; ///< how far rounding may have moved it, in units of the frame
     PathTint tint;    ///< of its path from the root
     std::optional<MaterialId> material;
-    unsigned levels = 0; ///< that its path has used up (graph.h, "Levels")
+    unsigned levels = 0; ///< levels that its path has used up (graph.h, "Levels")
 };
 
-/// What lies around an object deep in the unfolding. The descent goes from the root down, instance by
-/// instance; the frame is always that of the object reached, so nothing is ever expressed in coordinates of
-/// the world. What comes within reach is carried along, in pieces no larger than the
-/// object itself or the reach.
+/// The parts around an object deep in the unfolding. The descent goes from the root down, instance by
+/// instance. The frame is always that of the object reached, so no number is in coordinates of the world.
+/// Parts within reach are carried along, in pieces no larger than the object itself or the reach.
 ///
 /// The maps between an object and its neighbours are f_a^-1 f_b for two addresses a and b of equal size: each
 /// step down enlarges the rounding of the last. Where two parts touch, as the triangles of a gasket do, only
@@ -53,9 +52,9 @@ class Neighbourhood {
     const NearPiece& own() const { return own_; }
     const std::vector<NearPiece>& others() const { return others_; }
     std::size_t lost() const { return lost_; }
-    /// That there were too many for this, and not for their number.
+    /// True if Outcome::too_many was for most_looks, and not for most_pieces.
     bool looked_too_often() const { return looks_ > most_looks; }
-    /// Of the ball of a piece, in the frame.
+    /// Radius of the ball of a piece, in the frame.
     double radius(const NearPiece& piece) const;
 
     static constexpr std::size_t most_pieces = 20'000;

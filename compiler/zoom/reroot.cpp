@@ -18,14 +18,14 @@ namespace graftal {
 
 namespace {
 
-/// What lies farther from the focus is left out, in distances of the eye: its shadows and what is seen of it
-/// between the nearer parts.
+/// Reach about the focus, in distances of the eye. Parts farther away are left out, with their shadows and
+/// where they are seen between the nearer parts.
 constexpr double reach_share = 200;
-/// The same of parallel rays, in half diagonals of the picture; flat models have nothing out of the picture.
+/// Reach of parallel rays, in half diagonals of the picture; flat models have nothing out of the picture.
 constexpr double parallel_share = 16, flat_reach_share = 1.05;
 /// A map that stretches space so much more one way than another leaves no digits.
 constexpr double worst_condition = 1e8;
-/// What rounding may move a part by before it is worth a word.
+/// Largest movement of a part by rounding that is not worth a word.
 constexpr double visible_px = 0.25;
 /// A primitive this much larger than all that is in reach looks like a plane, and POV-Ray loses its place.
 constexpr double largest_primitive = 1e3;
@@ -83,7 +83,7 @@ class Rerooter {
     bool set_view(const std::optional<Vec3>& look_at, const std::optional<Affine>& picture_from_root) {
         if (request_.zoom) {
             result_.view = frame_object_(model_.graph.root, 0);
-            result_.view.catcher.reset(); // it lies under the whole model, and not under what is seen of it
+            result_.view.catcher.reset(); // the catcher lies under the whole model
             turn_to_focus(look_at.value_or(focus_.points.front()));
         } else if (!look_from_object(picture_from_root)) {
             return false;
@@ -228,7 +228,7 @@ class Rerooter {
         return map ? norm(map->linear) : std::numeric_limits<double>::infinity();
     }
 
-    /// Of the frame: what may be seen in the picture.
+    /// Reach of the frame: the parts that may be seen in the picture.
     double frame_reach(const ZoomScale& scale) const {
         const std::optional<Affine> map = picture_from_frame(scale);
         return map ? reach_ / std::max(singular_values(map->linear).z, 1e-300) : 0.0;

@@ -1,8 +1,8 @@
 #pragma once
 
-// Deep zoom. A picture far inside the unfolding is made of a graph with a new root: the few subtrees that lie
-// around the focus, placed in coordinates of the picture. They are found on the way down an address
-// (neighbourhood.h), so the magnification has no limit for similarities, and no coordinate passes through the
+// Deep zoom. A picture far inside the unfolding is made of a graph with a new root: the few subtrees that
+// lie around the focus, placed in coordinates of the picture. They are found on the way down an address
+// (neighbourhood.h), so the magnification has no limit for similarities. No coordinate passes through the
 // world (Hart and DeFanti's camera in a node's own frame, made a compiler's stage).
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct Rerooted {
     std::size_t depth = 0; ///< instances from the old root to where the new one begins
 };
 
-/// What a new root is made from.
+/// The model that a new root is made from.
 struct ZoomModel {
     const Graph& graph;
     const Components& components;
@@ -49,15 +49,15 @@ struct ZoomModel {
     std::optional<GraphPath> at = {}; ///< where the address leads, if there is one (find_path())
 };
 
-/// The view that shows an object by itself, as if its frame were the world; of the root, the whole model. Of
-/// the levels that the model may have so many are used up.
+/// The view that shows an object by itself, as if its frame were the world; for the root, the whole model.
+/// Paths to the object have used up `used_levels` of the model's levels.
 using FrameObject = std::function<View(ObjectId object, unsigned used_levels)>;
 
-/// With a zoom the camera keeps its direction, angle and distance, and looks at the focus, about which
-/// everything is enlarged. With an address alone the frame of its object becomes the world, and what
-/// `frame_object` makes of it the picture; only the lights stay where the model has them. `look_at`: a point
-/// to zoom about. Errors, in `diagnostics`: an address that does not exist or is deeper than the steps, a
-/// point whose digits do not reach so deep, maps that flatten space more than numbers can follow.
+/// Makes a new root. With a zoom the camera keeps its direction, angle and distance, and looks at the focus;
+/// everything is enlarged about it. With an address alone, the frame of its object becomes the world, and
+/// `frame_object` makes the picture; only the lights stay as in the model. `look_at`: a point to zoom about.
+/// Errors, in `diagnostics`: an address that does not exist or is deeper than the steps; a point with too
+/// few digits for the depth; maps that flatten space more than numbers can follow.
 std::optional<Rerooted> reroot(const ZoomModel& model, const ZoomRequest& request,
                                const FrameObject& frame_object, const std::optional<Vec3>& look_at,
                                Diagnostics& diagnostics);

@@ -21,9 +21,9 @@ class ZoomScale {
 
     /// Goes on to the frame behind the next step of the path.
     void descend();
-    /// Of the frame reached; nothing while it is larger than `largest` in the picture.
+    /// The map of the frame reached; nothing while the frame is larger than `largest` in the picture.
     std::optional<Affine> picture_from_frame() const;
-    /// How much larger than in the world lengths are.
+    /// Enlargement of lengths from the world to the picture.
     Magnification zoom() const { return zoom_; }
 
     static constexpr double largest = 1e150;

@@ -22,20 +22,20 @@ namespace {
 
 /// A node is shared where the errors that measure a unit differ by no more than this factor over it.
 constexpr double most_unequal = 1.5;
-/// Nor is it worth a copy of its own where it measures so few errors.
+/// Least number of errors that a node measures to be worth a copy of its own.
 constexpr double least_unshared = 8;
 /// Steps an octave in which sizes are told apart: what is culled has to be small enough, meshes nearly so.
 constexpr int culling_grain = 64;
 constexpr int meshing_grains[] = {2, 1, 0};
-/// Sizes that the view gives are rounded up to so many steps an octave, so that parts at distances of all
-/// kinds share what is below them.
+/// Steps an octave to which sizes that the view gives are rounded up. Parts at distances of all kinds then
+/// share what is below them.
 constexpr int view_grain = 2;
 /// A part without thickness gets this share of its size, where nothing is culled.
 constexpr double given_thickness = 1e-4;
 constexpr std::size_t most_crushed_leaves = 1'000'000;
 constexpr std::int32_t largest_size_step = 1 << 24;
 
-/// What is shared: a node with the levels it has left, and the step of the errors that measure its unit.
+/// Key of a shared node: with the levels it has left, and the step of the errors that measure its unit.
 struct SharedKey {
     NodeId node = 0;
     std::uint32_t steps = 0;
@@ -61,7 +61,7 @@ struct SceneTask {
     std::optional<PlacedNode> placed;
 };
 
-/// Nodes that differ by their levels alone: at least so many, where nothing is culled.
+/// Least number of nodes that differ by their levels alone, where nothing is culled.
 std::size_t least_nodes(const PreparedCut& prepared) {
     const std::vector<CutNode>& nodes = prepared.cut.nodes;
     if (!nodes[prepared.cut.root].unending || prepared.root_steps == unlimited_steps) return 0;
@@ -125,7 +125,7 @@ class SceneBuilder {
         return even || !culls_ || (!node.unbounded && 2 * ball.radius * range.most <= least_unshared);
     }
 
-    /// Of a node that the view sees at this size.
+    /// The step of a node of which `errors` measure a unit in the view.
     std::int32_t size_step(double errors) const {
         if (grain_ == 0) return 0;
         const int grain = detail_.error_world ? grain_ : view_grain;
@@ -139,7 +139,7 @@ class SceneBuilder {
         return std::exp2(static_cast<double>(step) / grain_);
     }
 
-    /// Of the task's node.
+    /// Errors that measure a unit of the task's node.
     double errors_of(const SceneTask& task) const {
         return task.placed ? errors_per_unit(world_ball(task.key.node, *task.placed))
                            : errors_of(task.key.size_step);
@@ -167,7 +167,7 @@ class SceneBuilder {
         return id;
     }
 
-    /// Of a node that is no primitive.
+    /// The scene's node for a key, made at its first use. Requires a node that is no primitive.
     SceneId shared(const SharedKey& key) {
         const auto known = shared_.find(key);
         if (known != shared_.end()) return known->second;
@@ -297,7 +297,7 @@ class SceneBuilder {
             SceneLook look;
         };
         std::size_t leaves = 0;
-        // What a singular map crushes piles up: of leaves that lie alike one will do.
+        // Leaves that a singular map crushes pile up: one of those that lie alike is enough.
         PlacedSet seen(std::max(cut_.nodes[task.key.node].ball.radius, 1e-280));
         std::vector<Crushed> stack{{task.key.node, task.key.steps, {}, 1, {}}};
         const auto add = [&](const Crushed& at, const Primitive& primitive, const Affine& place,

@@ -6,7 +6,7 @@
 
 namespace graftal {
 
-/// How finely curved surfaces are meshed.
+/// Fineness of the meshes of curved surfaces.
 enum class SceneMeshes {
     by_size, ///< each leaf by its own size: for flat files, whose triangles count
     shared,  ///< one mesh a primitive, where nothing is culled: for files that share it

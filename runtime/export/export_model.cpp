@@ -26,7 +26,7 @@ StageOptions export_stages(const ExportModelOptions& options, const AnalysedMode
     return stages;
 }
 
-/// What a node and a part take, with all that is made of them.
+/// Limits by the memory that a node and a part take, with all that is made of them.
 SceneLimits scene_limits(std::uint64_t memory_bytes) {
     constexpr std::uint64_t bytes_of_node = 1024, bytes_of_part = 256;
     return {static_cast<std::size_t>(memory_bytes / bytes_of_node),
@@ -115,7 +115,7 @@ class Exporter {
     const ExportFormat& format_;
 };
 
-/// As export_model(), except that a stage that is cancelled throws Cancelled.
+/// Does the work of export_model(), except that a stage that is cancelled throws Cancelled.
 std::optional<std::string> export_whole(PictureSession& session, const ExportModelOptions& options,
                                         Compilation& compilation) {
     const ExportFormat* const format = find_export_format(options.file.output);

@@ -42,7 +42,7 @@ struct ScenePart {
     std::optional<Rgb> colour;
 };
 
-/// What holds at the end of a path from the root.
+/// The look at the end of a path from the root.
 struct SceneLook {
     PathTint tint;
     Rgb inherited{0.8}; ///< the colour of what is not tinted
@@ -59,8 +59,8 @@ struct SceneNode {
     std::string name;                    ///< of the model's object; not unique
     std::optional<std::uint32_t> shape;  ///< a leaf, which has no parts
     std::vector<ScenePart> parts;        ///< in the order of the model
-    MeanColour whole{Rgb(0.0), 1};       ///< what it looks like from afar
-    MeanColour mean{Rgb(0.0), 1};        ///< what the node makes of the colour that it inherits
+    MeanColour whole{Rgb(0.0), 1};       ///< its look from afar
+    MeanColour mean{Rgb(0.0), 1};        ///< its colour from the one that it inherits
     std::shared_ptr<const RunCell> cell; ///< in place of parts: a range of a run
     double errors_per_unit = 1;          ///< of a cell: decides how fine its shapes are
     SceneLook look;                      ///< of a leaf, once looks are resolved (looks.h)
@@ -74,13 +74,13 @@ struct ExportedScene {
     std::vector<Material> materials;
     std::map<SceneShape, SceneId> leaves; ///< by shape: what the parts of cells lead to
     bool one_mesh = false;                ///< of a primitive: shapes are told apart by that alone
-    double tolerance_errors = 0.4;        ///< what a mesh may be off by, in errors
+    double tolerance_errors = 0.4;        ///< largest error of a mesh, in errors
     Box bounds;                           ///< of the model's limit set
     bool left_out_planes = false;         ///< they have no end, so no mesh
     std::uint64_t thickened = 0;          ///< parts that a map had left no thickness
     bool culled = false;                  ///< parts are left out for their size
 
-    /// The key of `leaves` for a primitive where so many errors measure a unit.
+    /// The key of `leaves` for a primitive of which `errors_per_unit` measure a unit.
     SceneShape shape_for(const Primitive& primitive, double errors_per_unit) const;
     /// The mesh that suits it.
     int fineness(const Primitive& primitive, double errors_per_unit) const;

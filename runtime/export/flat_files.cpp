@@ -12,7 +12,7 @@ namespace graftal {
 
 namespace {
 
-/// What 32-bit floats hold with room for squares of it, as readers make them.
+/// Largest coordinate and least extent: readers hold the squares of both in 32-bit floats.
 constexpr double most_coordinate = 1e18, least_extent = 1e-18;
 constexpr std::uint64_t leaves_a_look = 4096;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What formats share that list every triangle of every leaf.
+// Sizes and leaves for formats that list every triangle of every leaf.
 
 #include "runtime/export/formats.h"
 #include "runtime/export/output_file.h"
@@ -13,15 +13,15 @@ struct MeshSize {
     std::uint64_t vertices = 0, triangles = 0;
 };
 
-/// Those of each shape, as ShapeMeshes has it where `cornered`, each triangle with its own corners; else at
-/// least so many.
+/// Numbers of a shape's mesh as ShapeMeshes has it where `cornered`: each triangle has its own corners. Else
+/// the numbers are lower bounds.
 MeshSize mesh_size(const SceneShape& shape, bool cornered);
 
 /// Whether some material of the model has a picture, so that triangles may have their own corners.
 bool has_pictures(const ExportedScene& scene);
 
-/// Refuses a file of more bytes than allowed, or of more vertices than its numbers count, with an error that
-/// states how large it would be. `bytes`: of a leaf of each shape.
+/// Refuses a file of more bytes than allowed, or of more vertices than its numbers count. The error states
+/// how large it would be. `bytes`: of a leaf of each shape.
 bool refuse_size(const ExportJob& job, const std::function<std::uint64_t(const SceneShape&)>& bytes);
 
 /// Refuses a model whose coordinates 32-bit floats do not hold, in these units, with an error.

@@ -8,7 +8,7 @@ namespace graftal {
 
 namespace {
 
-/// How far a direction may be from a right angle to an axis.
+/// Largest deviation from a right angle between a direction and an axis, as a cosine.
 constexpr double from_the_side = 1e-6;
 
 bool is_convex(PrimitiveKind kind) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a format is: a row of the table that the command, its help and the manual read.
+// Formats: rows of the table that the command, its help and the manual read.
 
 #include <optional>
 #include <span>
@@ -16,23 +16,23 @@
 
 namespace graftal {
 
-/// What is said besides the model and its view.
+/// Options of an export besides the model and its view.
 struct ExportOptions {
     std::string output;
     std::uint64_t most_bytes = std::uint64_t{1} << 30;     ///< of a file
-    std::uint64_t fitted_bytes = std::uint64_t{128} << 20; ///< of one for which graftal chooses the error
-    std::optional<double> unit_mm;                         ///< what a unit of the model measures
+    std::uint64_t fitted_bytes = std::uint64_t{128} << 20; ///< of a file whose error graftal chooses
+    std::optional<double> unit_mm;                         ///< millimetres that a unit of the model measures
     std::optional<unsigned> levels;                        ///< instances within instances, at most
     bool instancing = false;
     bool plotter = false;
-    std::uint64_t memory_bytes = std::uint64_t{2} << 30; ///< that may be used
+    std::uint64_t memory_bytes = std::uint64_t{2} << 30; ///< most memory to use
     std::optional<std::size_t> nodes; ///< at most, of formats that share meshes only; default_nodes
     ImageMetadata metadata;
 
     static constexpr std::size_t default_nodes = 30'000;
 };
 
-/// What a format is given.
+/// The work for a format: a scene, and where to write it.
 struct ExportJob {
     ExportedScene& scene;
     const View& view;
@@ -49,7 +49,7 @@ struct ExportJob {
 /// An error among the job's diagnostics, which a model with fewer parts may not have.
 void refuse_as_too_large(const ExportJob& job, std::string problem, std::string_view hint);
 
-/// What it has written.
+/// An account of the file for the user.
 struct ExportReport {
     std::string summary; ///< such as "12 meshes, 1200 nodes"
 };
@@ -70,7 +70,7 @@ struct ExportFormat {
 
 std::span<const ExportFormat> export_formats();
 
-/// By the ending of a file's name; null if there is none.
+/// The format that the ending of a file's name asks for; null if there is none.
 const ExportFormat* find_export_format(std::string_view path);
 
 /// ".obj, .ply or .stl"

@@ -28,7 +28,7 @@ constexpr double most_gltf_instances = 2e6;
 /// Lights shine over a half sphere: what POV-Ray calls 1 is pi times as much to a surface.
 constexpr double light_of_one = std::numbers::pi;
 
-/// What a library writes to a stream, into a file.
+/// A stream for a library that writes into a file.
 class FileStream : public std::streambuf {
   public:
     explicit FileStream(OutputFile& file) : file_(file) {}

@@ -8,7 +8,7 @@
 
 namespace graftal {
 
-/// What of a mesh has one material.
+/// The part of a mesh that has one material.
 struct GroupSurface {
     std::optional<MaterialId> material;
     bool coloured = false; ///< by vertex, in place of the material's own colour
@@ -18,7 +18,7 @@ struct GroupSurface {
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Where formats have colours.
+/// The places where formats have colours.
 enum class ColoursOf { vertices, surfaces };
 
 /// The leaves below a node as surfaces, in the node's frame: with colours by vertex, or each in one colour

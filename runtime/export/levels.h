@@ -6,9 +6,9 @@
 
 namespace graftal {
 
-/// The same leaves with at most so many parts on the way from the root to any: nodes between are taken apart.
-/// Every so many heights one is kept, as few as fit. Nothing where that makes too many parts. Requires
-/// resolved looks and levels > 0.
+/// A scene of the same leaves with at most `levels` parts on the way from the root to any. Keeps nodes at
+/// even steps of height, and takes others apart. Nothing where that makes too many parts. Requires resolved
+/// looks and levels > 0.
 std::optional<ExportedScene> with_levels(const ExportedScene& scene, unsigned levels, std::size_t most_parts);
 
 } // namespace graftal

@@ -13,10 +13,10 @@ namespace graftal {
 
 namespace {
 
-/// How finely tints are told apart.
+/// The grain in which tints are told apart.
 struct TintDetail {
     double grain = 0;
-    /// What leaves no more than this share to be seen of what is below is all that is seen of it.
+    /// A tint that leaves no more than this share to be seen of what is below hides all of it.
     double least_open = 0;
 };
 constexpr TintDetail tint_details[] = {{1.0 / 255, 0},      {1.0 / 64, 1.0 / 64}, {1.0 / 32, 1.0 / 16},
@@ -111,7 +111,7 @@ class LookResolver {
     SceneId node_for(SceneId source, SceneLook& look) {
         const SceneNode& node = scene_.nodes[source];
         look.tint = look.colourless ? PathTint() : rounded(look.tint, detail_.grain);
-        // What does not show is the same for all.
+        // Parts of the look that do not show are set alike for all.
         if (look.tint.alpha >= 1 || look.colourless) look.inherited = Rgb(0.0);
         if (!open_[source]) {
             look.inherited = SceneLook().inherited;

@@ -19,10 +19,10 @@ struct LookLimits {
     TintsOn tints = TintsOn::leaves;
 };
 
-/// A scene whose leaves know how they look: a node is there once for each tint and material that it is placed
-/// with, and none has a cell. Where that makes too much, tints are told apart less finely, and what lies
-/// below a tint that covers nearly all of it is shown in its mean colour; a warning says so. Nothing, after
-/// an error, if even that is too much.
+/// A scene whose leaves know how they look: a node is there once for each tint and material that it is
+/// placed with, and none has a cell. Where that makes too much, tints are told apart less finely, and a
+/// warning says so. A part below a tint that covers nearly all of it then has its mean colour. Nothing,
+/// after an error, if even that is too much.
 std::optional<ExportedScene> resolve_looks(const ExportedScene& scene, const LookLimits& limits, Span model,
                                            Diagnostics& diagnostics);
 

@@ -8,7 +8,7 @@ namespace graftal {
 
 namespace {
 
-/// What holds nothing is no mesh.
+/// Triangles below each node. A node with none is no mesh.
 std::vector<double> triangles_below(const ExportedScene& scene) {
     std::vector<double> triangles(scene.nodes.size(), 0);
     for (const SceneId id : scene.masters_first) {
@@ -28,7 +28,7 @@ std::vector<double> triangles_below(const ExportedScene& scene) {
 
 MeshGroups group_meshes(const ExportedScene& scene, const GroupOptions& options) {
     const std::vector<double> triangles = triangles_below(scene);
-    std::vector<std::size_t> rank(scene.nodes.size()); // what holds others has the larger one
+    std::vector<std::size_t> rank(scene.nodes.size()); // a node has a larger rank than those that it holds
     for (std::size_t i = 0; i < scene.masters_first.size(); ++i)
         rank[scene.masters_first[i]] = i;
     // The largest first, and among equals what holds the others: so each node is opened after all that place

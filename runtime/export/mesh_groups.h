@@ -1,7 +1,7 @@
 #pragma once
 
-// Which parts become one mesh, for formats that share meshes but no unions of them: a list of places of
-// shared meshes, as the cut for POV-Ray is.
+// Choice of the parts that become one mesh, for formats that share meshes but no unions of them: a list of
+// places of shared meshes, as the cut for POV-Ray is.
 
 #include <vector>
 
@@ -11,7 +11,7 @@ namespace graftal {
 
 struct GroupOptions {
     double most_nodes = 30'000;     ///< places of meshes and of what holds them
-    double triangles_of_node = 100; ///< what a node costs a reader, in triangles of a mesh
+    double triangles_of_node = 100; ///< cost of a node to a reader, in triangles of a mesh
 };
 
 struct MeshGroups {

@@ -17,7 +17,7 @@ struct MtlKey {
     auto operator<=>(const MtlKey&) const = default;
 };
 
-/// A vertex, a normal and a triangle take so many bytes, about.
+/// Bytes that a vertex, a normal, a triangle and a place on a picture take, about.
 constexpr std::uint64_t obj_vertex_bytes = 34, obj_normal_bytes = 33, obj_triangle_bytes = 48,
                         obj_uv_bytes = 24;
 

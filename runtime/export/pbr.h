@@ -10,7 +10,7 @@ struct PbrMaterial {
     double roughness = 1; ///< the square root of the alpha of Trowbridge and Reitz
     double emission = 0;  ///< times the colour
     double transmission = 0;
-    double opacity = 1; ///< of what is only covered by a share: less than 1 for veils alone
+    double opacity = 1; ///< share that a veil covers; 1 for all else
     double ior = 1.5;
 };
 

@@ -103,7 +103,7 @@ std::optional<PlanePage> page_of(const ExportJob& job, std::optional<double> uni
             eye.orthographic ? eye.width : 2 * away * std::tan(0.5 * eye.angle_deg * std::numbers::pi / 180);
         height = width * aspect;
     } else {
-        constexpr double margin = 1.1; // as in pictures
+        constexpr double margin = 1.1; // the margin that pictures have
         for (const Vec3& corner : box.corners()) {
             width = std::max(width, 2 * margin * std::abs(glm::dot(corner - middle, right)));
             height = std::max(height, 2 * margin * std::abs(glm::dot(corner - middle, up)));

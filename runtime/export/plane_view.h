@@ -33,7 +33,7 @@ class SeenFrame {
     Point2 operator()(Vec3 point) const { return {dot(x_, point), dot(y_, point)}; }
     Vec3 along() const { return along_; }
 
-    /// How a part is seen whose frame lies so in this one. Requires a map that is not singular.
+    /// The frame in which a part is seen that lies so in this one. Requires a map that is not singular.
     SeenFrame of_part(const Affine& frame_from_part) const;
     /// Where the part's picture lies in this one's.
     Affine2 picture_of(const SeenFrame& part, const Affine& frame_from_part) const;
@@ -51,7 +51,7 @@ struct PlanePage {
     SeenFrame world;
     Affine2 page_from_world; ///< of pictures; y goes down
     double width = 1, height = 1;
-    double scale = 1; ///< what a unit of the model measures on it
+    double scale = 1; ///< length on the page of a unit of the model
 };
 
 /// The page of the view, in pixels, or with `unit` times the lengths of the model. Nothing, after an error,

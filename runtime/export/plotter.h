@@ -9,12 +9,12 @@ namespace graftal {
 /// A line that a pen draws without being lifted.
 using PenStroke = std::vector<Point2>;
 
-/// Puts strokes that go on from each other together, drops those that are drawn already, and orders and turns
-/// the rest so that the pen, once lifted, goes to the nearest end that is left. `tolerance`: ends that are no
-/// farther apart are one. O(n log n) where ends are spread evenly.
+/// Puts strokes that go on from each other together, and drops those that are drawn already. Orders and
+/// turns the rest: a lifted pen goes to the nearest end that is left. `tolerance`: ends that are no farther
+/// apart are one. O(n log n) where ends are spread evenly.
 std::vector<PenStroke> pen_path(std::vector<PenStroke> strokes, double tolerance);
 
-/// How far the pen goes while it is lifted, from the first stroke on.
+/// Length of the pen's way while it is lifted, from the first stroke on.
 double lifted_length(const std::vector<PenStroke>& strokes);
 
 } // namespace graftal

@@ -1,6 +1,6 @@
 #pragma once
 
-// What renderers with one level of instances share: a list of meshes, and where they lie.
+// Scenes for renderers with one level of instances: a list of meshes, and where they lie.
 
 #include "runtime/export/group_mesh.h"
 #include "runtime/export/looks.h"
@@ -48,8 +48,7 @@ class RendererScene {
 /// Half the angle of view along the shorter side, times two.
 double shorter_angle_deg(const View& view);
 
-/// A lamp of so many units of light would have to shine so to be as bright at the model as POV-Ray's, which
-/// do not fade.
+/// Units of light of a lamp that is as bright at the model as POV-Ray's, which do not fade.
 double lamp_at_model(const ExportedScene& scene, const Light& light);
 
 } // namespace graftal

@@ -18,7 +18,7 @@ namespace {
 /// are many corners, which rounding has taken apart.
 constexpr double one_corner = 1e-9;
 
-/// The same vertices, with one place for those that are one corner: the first's. O(n).
+/// Welds vertices: those that are one corner get one place, the first's. O(n).
 std::vector<Vec3> welded(const std::vector<Vec3>& vertices) {
     Box box;
     for (const Vec3& vertex : vertices)

@@ -24,7 +24,7 @@ class ShapeMeshes {
   public:
     explicit ShapeMeshes(const ExportedScene& scene) : scene_(scene) {}
 
-    /// As the look shows it: with places on the picture, if its material has one.
+    /// The mesh that the look shows: with places on the picture, if its material has one.
     const ShapeMesh& of(std::uint32_t shape, const SceneLook& look);
 
     bool has_picture(const SceneLook& look) const {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t most_svg_nodes = 500'000;
 constexpr std::uint64_t svg_part_bytes = 90;
-/// What a plotted page measures along its longer side where --unit does not say: it fits A4.
+/// Length of the longer side of a plotted page where --unit does not say: it fits A4.
 constexpr double plotted_page_mm = 180;
 constexpr double pen_mm = 0.3;
 constexpr std::size_t most_pen_strokes = 2'000'000;
@@ -99,7 +99,7 @@ class SvgWriter {
         file_.text("<defs>\n");
         for (std::size_t i = 0; i < shapes_.size(); ++i)
             shape(i);
-        // What is met first uses what is met later.
+        // Nodes that are met first use those that are met later.
         for (std::size_t i = nodes_.size(); i-- > 0;)
             if (i != root_) unite(i);
         file_.text("</defs>\n");
@@ -188,7 +188,7 @@ class SvgWriter {
         close();
     }
 
-    /// What a group of shapes says of its colour, and of how much of it covers what is behind.
+    /// Attributes of a group of shapes: its colour and its opacity.
     std::string look_of(const SceneLook& look) const {
         std::string text = fmt::format("color=\"{}\"", svg_colour(look.colour()));
         const double clear = look.material ? scene_.materials[*look.material].transparency : 0;

@@ -20,13 +20,13 @@ namespace graftal {
 
 namespace {
 
-/// From so many parts on that move, turn and scale only, a node lists them in a PointInstancer.
+/// Least number of parts that a node lists in a PointInstancer: parts that move, turn and scale only.
 constexpr std::size_t fewest_points = 64;
-/// A part takes so many bytes, about, by itself and in such a list.
+/// Bytes that a part takes, about, by itself and in a PointInstancer.
 constexpr std::uint64_t usd_part_bytes = 250, usd_point_bytes = 150;
 constexpr std::size_t most_usd_parts = 8'000'000;
 constexpr std::size_t most_usd_looks = 1'000'000;
-/// So many parts are wanted at most in a file that has few, or so many times those of the graph.
+/// Most parts wanted in a file that has few, and most wanted for each part of the graph.
 constexpr std::uint64_t fewest_wanted_parts = 2000, most_times_parts = 2;
 
 /// The name of a file: one with an @ stands between three of them.

@@ -80,7 +80,7 @@ class ReducedSink : public RowSink {
     std::vector<int> counts_;
 };
 
-/// As much of a label as fits.
+/// The start of a label that fits, with ".." where some is missing.
 std::string fitting(const std::string& label, int width) {
     const auto room = static_cast<std::size_t>(width / letter_width_px);
     if (label.size() <= room) return label;

@@ -12,11 +12,11 @@ namespace graftal {
 
 struct SheetPicture {
     std::string path;  ///< an sRGB PNG
-    std::string label; ///< what it shows: "seed=12"
+    std::string label; ///< the value that it shows: "seed=12"
 };
 
-/// Puts many pictures on one, row by row from the top left: each reduced by a whole factor until it fits into
-/// a cell, by the mean light of its pixels, and set in the middle of it on white, above its label. A label
+/// Puts many pictures on one, row by row from the top left. Each is reduced by a whole factor until it fits
+/// into a cell, by the mean light of its pixels. It lies in the middle on white, above its label. A label
 /// that does not fit ends with "..". The sheet is at most 8192 pixels wide, and holds one row of pictures in
 /// memory, `columns` in each. `on_picture` hears how many are done. A raised flag ends it: "interrupted".
 Status write_contact_sheet(const std::string& path, const std::vector<SheetPicture>& pictures,

@@ -26,7 +26,7 @@ struct JobFile {
 /// The most that a job may have.
 inline constexpr std::uint64_t most_tasks = 100'000;
 
-/// What is to be done on a farm, as a value: nothing in it depends on who does it, and when. Tasks have
+/// Work for a farm, as a value: nothing in it depends on the machine that does it, or the time. Tasks have
 /// numbers from 1 on.
 struct Job {
     std::string program; ///< program_identity() of who planned it
@@ -34,7 +34,7 @@ struct Job {
     /// The command line, without "graftal", of the one run that would do the same; the model lies in
     /// JobFolder::model_folder().
     std::vector<std::string> words;
-    std::string result; ///< what the merge makes: a path, which may be relative to the job's folder
+    std::string result; ///< path of the merge's result, which may be relative to the job's folder
     std::vector<JobFile> files;
     std::uint64_t tasks = 0;
     ImageSize tile{};              ///< of tiles
@@ -48,9 +48,9 @@ struct Job {
     double task_seconds = 0;      ///< of one processor that a task takes, about
     std::uint64_t task_bytes = 0; ///< of memory, about
 
-    /// Of the task of a picture in tiles: row by row, cut off at the right and below.
+    /// The place of a task's tile in the picture: row by row, cut off at the right and below.
     Tile tile_of(std::uint64_t task) const;
-    /// Of a part, at most.
+    /// Most bytes of a part.
     std::uint64_t most_part_bytes() const;
     std::uint64_t tile_columns() const;
 };
@@ -70,7 +70,7 @@ class JobFolder {
     std::string part(const Job& job, std::uint64_t task) const; ///< the picture that the task makes
     std::string record(std::uint64_t task) const;               ///< how it ended
     std::string starts(std::uint64_t task) const;               ///< a line for each time that it began
-    std::string log(std::uint64_t task) const;                  ///< what it said last
+    std::string log(std::uint64_t task) const;                  ///< its last messages
 
     /// Tells the folder from every other and from its copies, by numbers that nobody can choose; "" for a
     /// folder of another user.
@@ -88,7 +88,7 @@ class JobFolder {
     Status write_file(const std::string& path, std::string_view text) const;
     /// Whether others may open it, and right now: a regular file of the folder, there or not.
     Status check_file(const std::string& path) const;
-    /// file_digest() of a file in the folder of at most so many bytes; "" for others.
+    /// file_digest() of a file in the folder of `most_bytes` at most; "" for others.
     std::string digest(const std::string& path, std::uint64_t most_bytes) const;
     bool has_result(const Job& job) const;
     /// check_file() of a result in the folder. One outside of it has the user chosen.
@@ -109,7 +109,7 @@ std::string program_identity(const std::string& version);
 /// changed or cut short, not what was forged.
 std::string file_digest(const std::string& path);
 
-/// The same of a regular file below a folder (files_below.h), of at most so many bytes; "" for others.
+/// file_digest() of a regular file below a folder (files_below.h), of `most_bytes` at most; "" for others.
 std::string digest_below(const std::string& folder, std::string_view name, std::uint64_t most_bytes);
 
 } // namespace graftal

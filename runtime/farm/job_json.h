@@ -19,7 +19,7 @@ std::string read_job_json(const std::string& text, const std::function<void(cons
 
 /// A whole number from 0 on; 0 for one that is negative, broken or too large.
 std::uint64_t whole_of_json(const JobJson& json);
-/// The same up to `most`; -1 for others.
+/// A whole number from 0 to `most`; -1 for others.
 int small_whole_of_json(const JobJson& json, int most);
 /// A number from 0 to 1e15; 0 for others.
 double amount_of_json(const JobJson& json);

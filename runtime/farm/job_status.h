@@ -9,7 +9,7 @@
 
 namespace graftal {
 
-/// How far a job is, by the records of its tasks.
+/// Progress of a job, by the records of its tasks.
 struct JobStatus {
     struct Failure {
         std::uint64_t task = 0;

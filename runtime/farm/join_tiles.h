@@ -8,7 +8,7 @@
 
 namespace graftal {
 
-/// What a row of tiles takes while it is joined.
+/// Bytes of memory for a row of tiles while it is joined.
 std::uint64_t band_bytes(ImageSize size, int tile_height);
 
 /// The most that it may: whoever plans tiles keeps to it.

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As models name files: symbolic links stay, so that the copies lie to each other as the names say.
+/// An absolute path that keeps symbolic links, so that the copies lie to each other as models name them.
 fs::path whole_path(const std::string& path) {
     return fs::absolute(path).lexically_normal();
 }

@@ -13,10 +13,10 @@ namespace graftal {
 // The texts that go to Slurm's own programs and come from them. Slurm queues, starts, limits and repeats;
 // graftal only says what, and what is missing.
 
-/// What Slurm takes at once where nobody has set MaxArraySize: indices from 1 to 1000.
+/// The largest array that Slurm takes where nobody has set MaxArraySize: indices from 1 to 1000.
 inline constexpr std::uint64_t usual_array_size = 1000;
 
-/// How many tasks make a group of a minute or so, by the estimate of one.
+/// Number of tasks in a group of a minute or so, by the estimate of one.
 std::uint64_t minute_of_tasks(double task_seconds);
 
 /// Cuts tasks into the groups of an array job, of `group` tasks each: pieces of the list. There are at most
@@ -28,7 +28,7 @@ std::vector<std::vector<std::uint64_t>> group_tasks(const std::vector<std::uint6
 /// more, since tiles differ and machines too.
 std::uint64_t minutes_for(std::uint64_t tasks, double task_seconds);
 
-/// What was submitted: an array job of groups, and the merge that waits for it.
+/// The jobs of one submission: an array job of groups, and the merge that waits for it.
 struct SlurmArray {
     std::string id, merge_id;
     std::vector<std::vector<std::uint64_t>> groups;
@@ -46,7 +46,7 @@ Status write_array_script(const JobFolder& folder, std::size_t number,
                           const std::vector<std::vector<std::uint64_t>>& groups, const std::string& command,
                           std::string& script);
 
-/// Of "1234" or "1234;cluster", as `sbatch --parsable` prints it; "" for anything else.
+/// The number in "1234" or "1234;cluster", as `sbatch --parsable` prints it; "" for anything else.
 std::string parse_job_id(const std::string& printed);
 
 /// The indices of an array that `squeue -h -r -o %K` lists: they wait or are at work.

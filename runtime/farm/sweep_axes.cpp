@@ -27,7 +27,7 @@ bool is_name(std::string_view text) {
     return !(text.front() >= '0' && text.front() <= '9');
 }
 
-/// As people write it: 0.1 + 0.2 is 0.3.
+/// A number in the digits that people write: 0.1 + 0.2 is 0.3.
 std::string short_text(double value) {
     constexpr double least = 1e-12; // of sums that are meant to be 0
     return fmt::format("{:.12g}", std::abs(value) < least ? 0.0 : value);

@@ -16,7 +16,7 @@ namespace {
 
 using Json = JobJson;
 
-/// As RFC 4180 has it.
+/// A cell's text with quotes by RFC 4180.
 std::string quoted(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string result = "\"";
@@ -42,7 +42,7 @@ void flatten(const std::string& prefix, const Json& json,
 }
 
 struct Row {
-    std::vector<std::string> first; ///< what all have
+    std::vector<std::string> first; ///< cells that each row has
     std::map<std::string, std::string> stats;
 };
 

@@ -6,9 +6,9 @@
 
 namespace graftal {
 
-/// Writes the table of a sweep as CSV: a line a task, with the values of the axes, the name of its picture,
-/// the seconds that it took, and whatever is a number, a text or a truth in the `stats` of its model.
-/// Requires that all tasks are done.
+/// Writes the table of a sweep as CSV: a line a task, with the values of the axes, the name of its picture
+/// and its seconds. Numbers, texts and truths in the `stats` of its model follow. Requires that all tasks
+/// are done.
 Status write_sweep_table(const std::string& path, const JobFolder& folder, const Job& job);
 
 } // namespace graftal

@@ -55,7 +55,7 @@ Status write_record(const JobFolder& folder, std::uint64_t task, const TaskRecor
     }
     json["ended"] = record.ended;
     if (!record.stats.empty()) json["stats"] = Json::parse(record.stats);
-    // What a model or the system says need not be UTF-8.
+    // Words of a model or of the system need not be UTF-8.
     return folder.write_file(folder.record(task),
                              json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }

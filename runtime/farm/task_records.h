@@ -10,7 +10,7 @@
 
 namespace graftal {
 
-/// How a task ended, as it is kept in JobFolder::record().
+/// The end of a task, as JobFolder::record() keeps it.
 struct TaskRecord {
     bool done = false;
     std::string message;     ///< of a failure: its last line
@@ -39,7 +39,7 @@ bool is_done(const JobFolder& folder, const Job& job, std::uint64_t task);
 /// Adds a line to JobFolder::starts(). Nothing depends on it but reports.
 void note_start(const JobFolder& folder, std::uint64_t task);
 
-/// How often the task was started.
+/// Number of times that the task was started.
 std::uint64_t count_starts(const JobFolder& folder, std::uint64_t task);
 
 /// All that are not done, by the word of their records alone.

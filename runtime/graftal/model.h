@@ -20,7 +20,7 @@ struct Vector {
     double x = 0, y = 0, z = 0;
 };
 
-/// What is left open is as the model says, or else chosen so that the whole of it is in the picture.
+/// A camera. The model fills values left open, or else graftal, so that the whole model is in the picture.
 struct Camera {
     std::optional<Vector> location;
     std::optional<Vector> look_at;
@@ -38,13 +38,13 @@ struct Message {
     std::string file;              ///< empty where no text is at fault
     unsigned line = 0, column = 0; ///< from 1; 0 without a file
     std::string text;
-    std::string hint; ///< what to write instead; may be empty
+    std::string hint; ///< a text to write instead; may be empty
 };
 
 /// One a line, "crystal.rifs:3:5: error: ..."; hints have lines of their own.
 GRAFTAL_API std::string text_of(const std::vector<Message>& messages);
 
-/// What a function gives, or why it gives nothing. With a value there may be warnings and notes.
+/// A function's value, or the reasons why there is none. With a value there may be warnings and notes.
 template<typename Value> struct Result {
     std::optional<Value> value;
     std::vector<Message> messages;
@@ -56,7 +56,7 @@ template<typename Value> struct Result {
     const Value* operator->() const { return &*value; }
 };
 
-/// What `graftal stats` says.
+/// The numbers that `graftal stats` prints.
 struct Stats {
     std::size_t objects = 0;
     std::size_t instances = 0;     ///< edges of the graph
@@ -79,7 +79,7 @@ struct GraphInstance {
 struct ObjectGraph {
     std::size_t root = 0;
     std::vector<std::string> objects;    ///< names
-    std::vector<std::string> primitives; ///< what each object is: "sphere", or "" of a union of instances
+    std::vector<std::string> primitives; ///< one an object: "sphere", or "" of a union of instances
     std::vector<GraphInstance> instances;
 };
 
@@ -102,15 +102,15 @@ struct Drawn {
     double seconds = 0; ///< of drawing
 };
 
-/// How a model is written for another program. Each of the first five is for some formats only.
+/// Settings of a file for another program. Each of the first five is for some formats only.
 struct ExportSettings {
-    std::optional<double> unit_mm;    ///< what a unit of the model measures; else as the format has it
+    std::optional<double> unit_mm;    ///< millimetres of a unit of the model; else as the format has it
     std::optional<unsigned> levels;   ///< instances within instances, at most; at least 2
     std::optional<std::size_t> nodes; ///< at most, each the place of a mesh; 30,000 before
     bool instancing = false;          ///< glTF: a node a mesh, with a table of places
     bool plotter = false;             ///< SVG: each line once, in the order of a pen
-    /// Of the file. Where the whole model takes more, and no error_px() was asked for, small parts are left
-    /// out, with a warning, until the file has no more: or 128 MiB, if this is as here. Else it is refused.
+    /// Most bytes of the file. A model that takes more, without an error_px(), loses small parts, with a
+    /// warning, until the file has no more. With this default it has 128 MiB then. Else graftal refuses it.
     std::uint64_t most_bytes = std::uint64_t{1} << 30;
 };
 
@@ -119,7 +119,7 @@ enum class Engine {
     povray, ///< a child process; needs the program `povray`
 };
 
-/// How far the work is: a stage, as `graftal --time` names it, and a share from 0 to 1, or nothing where
+/// A listener to progress: a stage, as `graftal --time` names it, and a share from 0 to 1, or nothing where
 /// nobody knows.
 using OnProgress = std::function<void(std::string_view stage, std::optional<double> share)>;
 
@@ -138,22 +138,22 @@ class GRAFTAL_API Model {
     Model& operator=(Model&&) noexcept;
     ~Model();
 
-    // What is asked for. Nothing is run.
+    // Settings. They run nothing.
 
     void edit(std::string text);                     ///< in place of the file's text
     void reload();                                   ///< reads the file, and those that it names, again
     void set(const std::string& name, double value); ///< a `let` of the model
     void unset(const std::string& name);
     void steps(std::optional<unsigned> steps); ///< nothing: as the model says
-    void time(double steps); ///< the same between two steps, such as 7.5, of an L-system. Requires steps >= 0
+    void time(double steps); ///< steps() between two, such as 7.5, of an L-system. Requires steps >= 0
     void seed(std::optional<std::uint64_t> seed);
     void camera(const Camera& camera);
     /// The radius of the camera's lens, 0 for none, and the place that is sharp; nothing: as the model says.
     void lens(std::optional<double> aperture, const std::optional<Vector>& focus);
     void size(int width, int height);         ///< in pixels, each at least 1; 1280 x 720 before
     void zoom(std::optional<double> factor);  ///< about the point looked at. Requires a positive factor
-    void error_px(double pixels);             ///< what is smaller is left out; 0: nothing is; 0.5 before
-    void memory(std::uint64_t bytes);         ///< that drawing may take; 2 GiB before
+    void error_px(double pixels);             ///< graftal leaves out smaller parts; 0: none; 0.5 before
+    void memory(std::uint64_t bytes);         ///< most bytes for drawing; 2 GiB before
     void work(double seconds);                ///< of one processor that a picture may take
     void threads(int count);                  ///< 0, as before: one a processor
     void antialias(std::optional<int> depth); ///< up to 4^(depth - 1) samples a pixel; nothing: one
@@ -161,7 +161,7 @@ class GRAFTAL_API Model {
     /// Files that the model names, and the model itself, must lie in this folder; "": anywhere.
     void root(std::string folder);
 
-    // What comes of it.
+    // Results.
 
     Result<Stats> stats();
     /// At most 10^7 instances.

@@ -6,9 +6,8 @@
 
 namespace graftal {
 
-/// A grey light as a film shows it, sRGB encoded, in [0, 1]: times the exposure; a soft film shows x > 1/2 as
-///     1/2 + (1 - e^(1 - 2 x)) / 2,
-/// which leaves what is dark alone and never reaches 1; encoded as IEC 61966-2-1 says.
+/// A grey light as a film shows it, sRGB encoded (IEC 61966-2-1), in [0, 1]: times the exposure. A soft film
+/// shows x > 1/2 as 1/2 + (1 - e^(1 - 2 x)) / 2, which leaves dark parts alone and never reaches 1.
 double developed(double light, const Film& film);
 
 /// Linear light into the samples of a PNG: each component by developed(), after the gains that make the

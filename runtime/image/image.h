@@ -17,15 +17,15 @@ struct Image {
     bool operator==(const Image&) const = default;
 };
 
-/// How the samples of a picture are to be understood, and how many bits they keep in a PNG. EXR files keep
-/// 32-bit floats and are linear by definition.
+/// The meaning of a picture's samples, and the bits that they keep in a PNG. EXR files keep 32-bit floats
+/// and are linear by definition.
 enum class SampleFormat {
     srgb8,    ///< 8 bit, sRGB encoded: for people
-    srgb16,   ///< the same with 16 bit: for prints, and for what works on the picture
+    srgb16,   ///< 16 bit, sRGB encoded: for prints, and for programs that work on the picture
     linear16, ///< 16 bit, linear light (gamma 1 in the file): for numbers
 };
 
-/// What a PNG stores for 1.
+/// The number that a PNG stores for 1.
 inline int largest_level(SampleFormat format) {
     return format == SampleFormat::srgb8 ? 255 : 65535;
 }
@@ -33,13 +33,13 @@ inline int largest_level(SampleFormat format) {
 /// A linear value as sRGB encodes it (IEC 61966-2-1); clamped to [0, 1], 0 for NaN.
 float srgb_encoded(float linear);
 
-/// What a PNG stores for a sample whose largest level is given: largest * sample, rounded, halves up; clamped, 0 for
-/// NaN. Adding 0.5 would round a float just below a half up as well.
+/// The level of a sample in a PNG: largest * sample, rounded, halves up; clamped, 0 for NaN. Adding 0.5
+/// would round a float just below a half up as well.
 std::uint32_t level_of(float sample, int largest);
 std::uint8_t level8_of(float sample);
 
-/// How far two pictures are apart. Over the samples a_i, b_i, i = 1..N, of all pixels and channels
-/// (a grey picture counts as RGB, a missing alpha as 1), with d_i = |a_i - b_i|:
+/// Distances of two pictures. The samples a_i, b_i, i = 1..N, are those of all pixels and channels
+/// (a grey picture counts as RGB, a missing alpha as 1). With d_i = |a_i - b_i|:
 ///   max = max d_i,   mean = (1/N) sum d_i,   rms = sqrt((1/N) sum d_i^2).
 /// p99 is the least number that 99 of 100 pixels do not exceed, each by its largest d_i.
 /// Samples that are both NaN, or equal infinities, agree; any other pair with one of them is infinitely

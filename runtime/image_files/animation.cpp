@@ -74,7 +74,7 @@ class AnimatedPng {
     }
     Status put_chunk(std::string_view type, std::string_view data) { return put(png_chunk(type, data)); }
 
-    /// What the first frame says of colours and of its making holds for all.
+    /// Writes the chunks before all frames. Those of the first frame tell the colours and the making of all.
     Status put_head(const std::vector<PngChunk>& chunks) {
         header_ = chunks.front().data;
         Status status = put_chunk("IHDR", header_);

@@ -61,7 +61,7 @@ class ExrFile {
         return rows;
     }
 
-    /// So many rows, or those that are left at the bottom.
+    /// Adds a chunk's rows, or those that are left at the bottom.
     void add(int y, const float* samples) {
         exr_chunk_info_t chunk;
         if (!ok() || !check(exr_write_scanline_chunk_info(context_, 0, y, &chunk))) return;
@@ -86,7 +86,7 @@ class ExrFile {
         if (ok()) check(exr_encoding_run(context_, 0, &encoder_));
     }
 
-    /// What went wrong, or "".
+    /// The first error's text, or "".
     std::string finish() {
         if (std::exchange(encodes_, false)) exr_encoding_destroy(context_, &encoder_);
         if (context_) check(exr_finish(&context_)); // writes where the chunks are
@@ -108,8 +108,8 @@ class ExrFile {
         return static_cast<std::int64_t>(count);
     }
 
-    /// What is not smaller is stored as it is, and readers tell it by its size; OpenEXR 3.1's core stores
-    /// what it compressed to that very size.
+    /// Stores data that compression does not shrink as they are: readers tell them by their size. OpenEXR
+    /// 3.1's core would store the compressed bytes of that very size.
     static exr_result_t compress(exr_encode_pipeline_t* encoder) {
         const exr_result_t result = static_cast<ExrFile*>(encoder->encoding_user_data)->compress_(encoder);
         if (result == EXR_ERR_SUCCESS && encoder->compressed_bytes == encoder->packed_bytes)
@@ -137,7 +137,7 @@ class ExrFile {
     std::string error_;
 };
 
-/// As OpenEXR has them: grey is luminance.
+/// The channels' names in OpenEXR: grey is luminance.
 std::vector<std::string> names_of(int channels) {
     if (channels <= 2)
         return channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"Y", "A"};

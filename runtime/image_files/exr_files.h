@@ -12,7 +12,7 @@ namespace graftal {
 /// went wrong, in words, or "".
 std::string write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata,
                       const MoreChannels* more);
-/// The same file of rows that come one after the other.
+/// write_exr() of rows that come one after the other: the same file.
 std::string write_exr_rows(const std::string& path, const RowShape& shape, RowSource& rows,
                            const ImageMetadata& metadata);
 

@@ -14,16 +14,16 @@
 
 namespace graftal {
 
-/// What a picture says about its making.
+/// Texts in a picture's file about its making.
 struct ImageMetadata {
     std::string software;    ///< tag Software
     std::string description; ///< tag ImageDescription: the command line
     std::string stamp;       ///< tag graftal:stamp: what a frame of an animation was made from
 };
 
-/// What an EXR may hold besides the colours.
+/// Channels of an EXR besides the colours.
 struct MoreChannels {
-    std::vector<std::string> names; ///< as OpenEXR has them, such as "normal.X"
+    std::vector<std::string> names; ///< OpenEXR's names, such as "normal.X"
     std::vector<float> samples;     ///< row by row, top first, the channels of a pixel together
     std::vector<std::pair<std::string, std::string>> tags; ///< name and text
 };
@@ -56,10 +56,10 @@ void watch_libraries_load(void (*on_late)());
 /// Reads a regular file in any format that OpenImageIO knows, row by row where the format allows it.
 Status read_rows(const std::string& path, RowSink& sink);
 
-/// The same, all of it; refuses pictures of more than 2^28 samples (1 GiB).
+/// read_rows() into one image; refuses pictures of more than 2^28 samples (1 GiB).
 Status read_image(const std::string& path, Image& image);
 
-/// The same of a picture that POV-Ray has just made.
+/// read_image() of a picture that POV-Ray has just made.
 Status read_povray_image(const std::string& path, Image& image);
 
 /// Gives the rows of a picture that outlives it.
@@ -77,7 +77,7 @@ class ImageRows : public RowSource {
 /// arguments only. Samples are clamped to [0, 1] in PNG. `more`: null, or requires an EXR.
 Status write_image(const std::string& path, const Image& image, SampleFormat format,
                    const ImageMetadata& metadata = {}, const MoreChannels* more = nullptr);
-/// The same without the commit.
+/// write_image() without the commit.
 Status write_image(const PendingFile& pending, const Image& image, SampleFormat format,
                    const ImageMetadata& metadata = {}, const MoreChannels* more = nullptr);
 

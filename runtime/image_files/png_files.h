@@ -28,7 +28,7 @@ std::string read_png(const std::string& path, RowSink& sink);
 std::string write_png(const std::string& path, const Image& image, SampleFormat format,
                       const ImageMetadata& metadata);
 
-/// The same of rows that come one after the other.
+/// Writes a PNG of rows that come one after the other.
 std::string write_png_rows(const std::string& path, const RowShape& shape, RowSource& rows,
                            SampleFormat format, const ImageMetadata& metadata);
 

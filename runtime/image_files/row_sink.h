@@ -20,7 +20,7 @@ class RowSink {
     virtual void take(const float* samples) = 0;
 };
 
-/// What a picture is like, without its samples.
+/// The size of a picture, without its samples.
 struct RowShape {
     int width = 0;
     int height = 0;

@@ -22,7 +22,7 @@ bool is_linear_name(const std::string& path) {
     return ending == ".exr" || ending == ".hdr";
 }
 
-/// Takes the rows of a file; each texel is the mean of so many pixels across and down.
+/// Takes the rows of a file; each texel is the mean of several pixels across and down.
 class SkySink : public RowSink {
   public:
     SkySink(bool linear, std::uint64_t most) : linear_(linear), most_(most) {}
@@ -109,7 +109,7 @@ Status read_sky_picture(const std::string& path, std::uint64_t most_texels, Load
 }
 
 Status write_sky_picture(const PendingFile& pending, const SkyPicture& picture, double factor) {
-    // By an odd number, so that the middles of rows stay middles.
+    // The factor is odd, so that the middles of rows stay middles.
     int finer = 1;
     while (finer * picture.height() < least_written_rows)
         finer += 2;

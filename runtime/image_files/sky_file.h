@@ -9,10 +9,10 @@
 
 namespace graftal {
 
-/// The sky in the picture of a file, reduced while it is read: to at most so many texels, and
-/// most_sky_columns across and down. Samples of EXR and HDR files are linear, all others sRGB; alpha is of no
-/// account. What is no light is mended and counted: negative samples and those that are no numbers become 0,
-/// larger ones most_radiance. Requires most_texels > 0.
+/// Reads the sky in a picture's file, reduced to `most_texels` at most, and most_sky_columns across and
+/// down. Samples of EXR and HDR files are linear, all others sRGB; alpha does not count. Samples that are no
+/// light are mended and counted: negative ones and those that are no numbers become 0, larger ones
+/// most_radiance. Requires most_texels > 0.
 Status read_sky_picture(const std::string& path, std::uint64_t most_texels, LoadedSkyPicture& loaded);
 
 /// Writes it times a factor as POV-Ray is to read it: EXR, which POV-Ray takes in half precision, so that no

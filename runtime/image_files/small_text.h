@@ -6,7 +6,7 @@
 
 namespace graftal {
 
-/// What a letter takes, with the space around it.
+/// The size of a letter, with the space around it.
 inline constexpr int letter_width_px = 6, letter_height_px = 10;
 
 /// Writes a line of text over a picture, in the X11 font 6x10 (in the public domain), which needs no file.

@@ -28,7 +28,7 @@ std::uint64_t texels_of(const LoadedSkyPicture& sky) {
     return texels_a_sky_texel * texel_count(sky.picture->width(), sky.picture->height());
 }
 
-/// Makes a texture of the rows of a file, reduced to at most so many texels.
+/// Makes a texture of the rows of a file, reduced to `most` texels.
 class TextureSink : public RowSink {
   public:
     TextureSink(bool linear, std::uint64_t most) : linear_(linear), most_(most) {
@@ -121,7 +121,7 @@ class TextureSink : public RowSink {
     std::uint64_t most_;
     Decoded decoded_;
     Texture texture_;
-    int reduced_ = 1; ///< a texel is the mean of so many texels of the file across, and up
+    int reduced_ = 1; ///< texels of the file, across and up, whose mean a texel is
     int rows_left_ = 0;
     int rows_ = 0; ///< of the file, in the cells
     std::size_t channels_ = 0;

@@ -14,7 +14,7 @@
 
 namespace graftal {
 
-/// The picture in a file, reduced to at most so many texels while it is read. Requires most_texels > 0.
+/// Reads the picture in a file, reduced to `most_texels` while it is read. Requires most_texels > 0.
 Status read_texture(const std::string& path, std::uint64_t most_texels, Texture& texture);
 
 /// The pictures that models name, each read once in the life of the store. Threads may ask at once.
@@ -25,7 +25,7 @@ class TextureStore {
     /// 2^12 texels.
     std::shared_ptr<const Texture> load(const std::string& path, Status& status);
 
-    /// What a compiler asks of it (LowerOptions).
+    /// The facts of a picture for the compiler (LowerOptions).
     Status look_at(const std::string& path, TextureFacts& facts);
 
     /// A sky's picture (sky_file.h), which counts as four times its texels.

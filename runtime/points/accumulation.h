@@ -9,8 +9,8 @@
 
 namespace graftal {
 
-/// How many points fell into each pixel, and their colours' sums. All whole numbers, so that the order in
-/// which points come makes no difference. Colours lie in [0, 1] and are kept to 1/65535.
+/// Number of points in each pixel, and the sums of their colours. All are whole numbers, so that the order
+/// in which points come makes no difference. Colours lie in [0, 1] and are kept to 1/65535.
 class Accumulation {
   public:
     struct Cell {
@@ -30,7 +30,7 @@ class Accumulation {
 
     void prefetch(std::size_t pixel) const { __builtin_prefetch(&cells_[pixel], 1); }
 
-    /// The same where several threads add to one picture.
+    /// add() where several threads add to one picture.
     void add_shared(std::size_t pixel, const float rgb[3]) {
         Cell& cell = cells_[pixel];
         std::atomic_ref(cell.count).fetch_add(1, std::memory_order_relaxed);

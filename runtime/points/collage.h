@@ -15,9 +15,9 @@ struct CollageOptions {
     bool light = false; ///< the lighter ones are
 };
 
-/// How well the maps of an iterated function system cover a target set L by their images of it (Barnsley
-/// 1985): with eps = h(L, C u union of w_j(L)) in Hausdorff distance, and contractivity s, the attractor A
-/// has h(L, A) <= eps / (1 - s). Sets are cells of a grid of pixels, which moves points by half a pixel's
+/// Cover of a target set L by its images under the maps of an iterated function system (Barnsley 1985). Let
+/// eps = h(L, C u union of w_j(L)) in Hausdorff distance, and s be the contractivity. Then h(L, A) <= eps /
+/// (1 - s) for the attractor A. Sets are cells of a grid of pixels, which moves points by half a pixel's
 /// diagonal at most; the bound has that added to eps. Lengths are in the model's units.
 struct Collage {
     std::size_t target_pixels = 0;

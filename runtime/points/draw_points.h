@@ -40,7 +40,7 @@ struct PointsReport {
     double seconds = 0; ///< of making points
 };
 
-/// How many points will be taken.
+/// Number of points that draw_points() will take.
 std::uint64_t point_count(const PointsOptions& options);
 
 /// Draws points of a source, or writes them: what draw_points() ends with. `card`: written, and to appear

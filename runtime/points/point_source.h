@@ -18,7 +18,7 @@ class PointStream {
     virtual bool fill(std::span<ChaosPoint> points) = 0;
 };
 
-/// What points are drawn from.
+/// A source of points to draw.
 class PointSource {
   public:
     virtual ~PointSource() = default;
@@ -39,7 +39,7 @@ class ChaosSource : public PointSource {
     std::uint64_t seed_;
 };
 
-/// How a number of points is taken from a source.
+/// The work of taking points from a source.
 struct PointWork {
     std::uint64_t points = 0;
     int threads = 0; ///< 0: all processors
@@ -56,13 +56,13 @@ inline constexpr std::uint64_t points_of_stream = 1u << 17;
 bool take_points(const PointSource& source, const PointWork& work,
                  const std::function<void(int worker, std::span<const ChaosPoint>)>& take);
 
-/// As take_points(), but one batch at a time and in order: `make` turns points into bytes, on any thread;
-/// `write` gets them in order. False also if `write` fails.
+/// Takes points as take_points() does, but one batch at a time and in order. `make` turns points into bytes,
+/// on any thread; `write` gets them in order. False also if `write` fails.
 bool write_points(const PointSource& source, const PointWork& work,
                   const std::function<void(std::span<const ChaosPoint>, std::vector<char>&)>& make,
                   const std::function<bool(const std::vector<char>&)>& write);
 
-/// How many threads will be at work, or fewer.
+/// Number of threads that will be at work, or fewer.
 int worker_count(int threads);
 
 } // namespace graftal

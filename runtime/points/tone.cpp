@@ -16,7 +16,7 @@ namespace graftal {
 
 namespace {
 
-/// What the background shows through each pixel.
+/// Colours of the background in each pixel.
 class Backdrop {
   public:
     explicit Backdrop(const View& view) : view_(view) {

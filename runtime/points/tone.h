@@ -9,15 +9,15 @@
 
 namespace graftal {
 
-/// What colour points have.
+/// The source of the points' colours.
 enum class PointColour {
-    tint,    ///< as the graph composes the tints on their way
+    tint,    ///< composed of the graph's tints on their way
     map,     ///< one for each map, by the one that was applied last
     density, ///< by how many there are
 };
 
-/// How numbers of points become a picture. With n points in a pixel, m in the mean over all pixels that have
-/// any, and w the number that 95 of 100 of these do not exceed, they have the weight
+/// The way from numbers of points to a picture. Let a pixel have n points. Let m be the mean over all pixels
+/// that have any, and w the number that 95 of 100 of these do not exceed. The points have the weight
 ///     a = (log(1 + exposure n / m) / log(1 + exposure w / m))^(1 / gamma)
 /// and their mean colour.
 struct Tone {

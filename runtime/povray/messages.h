@@ -1,6 +1,6 @@
 #pragma once
 
-// What POV-Ray 3.7 writes to standard error, taken apart: progress counters that end in a carriage return,
+// POV-Ray 3.7's text on standard error, taken apart: progress counters that end in a carriage return,
 // messages wrapped at 80 columns, times, and the words that tell success from failure.
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct PovrayLog {
     static constexpr std::size_t max_messages = 100;
 
     std::vector<PovrayMessage> messages;
-    std::vector<std::string> last_lines; ///< of what was printed, for failures without a message
+    std::vector<std::string> last_lines; ///< of the output, for failures without a message
     bool finished = false;               ///< "POV-Ray finished" was printed
     bool illegal_matrix = false;         ///< a degenerate matrix was replaced: the picture is wrong
     bool no_objects = false;

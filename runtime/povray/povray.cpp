@@ -37,7 +37,7 @@ std::string body_named(const std::string& line) {
     return line.substr(begin + 1, line.find(' ', begin + 1) - begin - 1);
 }
 
-/// What POV-Ray said about a failed run: its errors, else its last lines.
+/// POV-Ray's words about a failed run: its errors, else its last lines.
 std::string complaints(const PovrayJob& job, const PovrayLog& log) {
     std::string text;
     for (const PovrayMessage& message : log.messages)

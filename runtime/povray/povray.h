@@ -12,7 +12,7 @@ namespace graftal {
 
 /// A scene file to be rendered by POV-Ray 3.7 as a child process.
 struct PovrayJob {
-    std::string program = "povray"; ///< as find_program takes it
+    std::string program = "povray"; ///< a name for find_program()
     std::string directory;          ///< holds the scene and what it refers to; the picture is written there
     std::string scene = "scene.pov";
     std::string picture = "picture.png";
@@ -20,19 +20,19 @@ struct PovrayJob {
     int height = 0;
     int threads = 0;                ///< 0: as many as POV-Ray likes
     std::optional<int> antialias;   ///< N: adaptive, up to 2^N x 2^N samples a pixel, N in 1..9; nothing: off
-    double antialias_threshold = 0; ///< by so much corners of what is divided differ, as shares of white
+    double antialias_threshold = 0; ///< squares are divided whose corners differ by more, in shares of white
     enum class Format {
         srgb8,    ///< 8-bit PNG
         linear16, ///< 16-bit PNG of linear values, at most 1
         half      ///< EXR of half floats, linear and not clipped
     };
     Format format = Format::srgb8;
-    std::uint64_t memory_bytes = 0; ///< that it may take; 0: no limit
+    std::uint64_t memory_bytes = 0; ///< most memory of the child; 0: no limit
     std::uint64_t cpu_seconds = 0;  ///< of all its threads; 0: no limit
     /// May read and write what we may, with our environment and without limits: for programs that start
     /// POV-Ray somewhere else.
     bool unconfined = false;
-    std::optional<std::uint64_t> finite_objects; ///< that POV-Ray must find; nothing: not checked
+    std::optional<std::uint64_t> finite_objects; ///< count for POV-Ray to find; nothing: not checked
     std::function<void(const PovrayProgress&)> on_progress;
     CancelFlag cancel; ///< ends POV-Ray
 };

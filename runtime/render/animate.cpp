@@ -69,7 +69,7 @@ class Animation {
     }
 
   private:
-    /// What moves, as it is in a frame.
+    /// The moving values of a frame.
     struct Moment {
         StageOptions compile;
         std::string name; ///< for messages
@@ -208,7 +208,7 @@ class Animation {
         std::rotate(frames.begin() + 2, frames.end() - 1, frames.end());
     }
 
-    /// Of a frame: of samples in the order above by Simpson's rule.
+    /// Mean seconds of a frame: by Simpson's rule where the three are samples in the order above.
     static double mean_of(const std::vector<double>& seconds, bool sampled) {
         const double weight = sampled ? 4 : 1;
         return (seconds[0] + weight * seconds[1] + seconds[2]) / (weight + 2);
@@ -349,7 +349,7 @@ class Animation {
     std::optional<unsigned> steps_; ///< of the model measured last
     Digest model_sources_;
     Digest all_sources_;
-    std::string sources_text_;       ///< of that, once all are known
+    std::string sources_text_;       ///< the text of all_sources_, once all are known
     std::vector<Digest> sources_;    ///< by frame and moment
     std::vector<std::size_t> drawn_; ///< frames, by this run
     AnimationOutcome outcome_;

@@ -14,8 +14,8 @@ namespace graftal {
 
 enum class AnimationKind { frames, gif, animated_png, video };
 
-/// By the end of the name: `.gif`; `.png`, `.apng`; `.mp4`, `.webm`; a directory of frames without any or
-/// with a slash. Nothing for other names.
+/// The kind that a name ends with: `.gif`; `.png`, `.apng`; `.mp4`, `.webm`; a directory of frames without
+/// any or with a slash. Nothing for other names.
 std::optional<AnimationKind> animation_kind(const std::string& output);
 
 /// Where the frames are while they are made: the output itself, or NAME.frames beside NAME.gif.
@@ -30,16 +30,16 @@ struct AnimationProgress {
     std::optional<double> fraction;     ///< of this frame, once its pixels are being drawn
 };
 
-/// What measure_animation() has found: with it, any frame can be drawn by itself.
+/// Findings of measure_animation(): with them, any frame can be drawn by itself.
 struct MeasuredAnimation {
     std::shared_ptr<const SharedFraming> framing;
     std::string sources; ///< a digest of all models that are shown
 };
 
-/// What is known after the first few frames.
+/// An estimate after the first few frames.
 struct AnimationEstimate {
     std::size_t frames = 0; ///< to be drawn
-    double seconds = 0;     ///< that they take, the first ones too
+    double seconds = 0;     ///< for them, with the first ones
 };
 
 struct AnimateOptions {
@@ -51,18 +51,18 @@ struct AnimateOptions {
     double turn_deg = 0; ///< of the camera about the model's vertical axis, over the whole animation
     std::vector<Sweep> sweeps;
     Ease ease = Ease::linear;
-    /// How long each frame is exposed, as a share of the time between two, in [0, 1]; 0: it shows a moment.
-    /// Others are the mean light of as many moments as moments_of_exposure() gives.
+    /// Exposure of each frame, as a share of the time between two, in [0, 1]; 0: it shows a moment. Others
+    /// are the mean light of the moments_of_exposure().
     double shutter = 0;
     bool keep_frames = false;  ///< after they have been assembled
     std::string frames_folder; ///< "": frames_directory(output)
     /// The models are known: they are not looked at before a frame is drawn. Where frames are missing then,
     /// others than `only` are not drawn, and it fails.
     std::optional<MeasuredAnimation> measured;
-    /// These frames, from 0 on, are drawn, and nothing is put together; others may draw in the folder at the
-    /// same time. Nothing: all. Requires `measured`.
+    /// Numbers of the frames to draw, from 0 on; nothing is put together then. Others may draw in the folder
+    /// at the same time. Nothing: all. Requires `measured`.
     std::optional<std::vector<std::size_t>> only;
-    std::string identity; ///< what the frames depend on besides the model: the program and its options
+    std::string identity; ///< the program and its options, on which frames depend besides the model
     std::function<void(const AnimationProgress&)> on_progress;
     /// Once, after the first few frames, if there are more.
     std::function<void(const AnimationEstimate&)> on_estimate;
@@ -70,10 +70,10 @@ struct AnimateOptions {
     std::function<void(const Compilation&)> on_compiled;
 };
 
-/// How an animation ended.
+/// The result of an animation.
 struct AnimationOutcome {
     bool done = false;
-    Compilation compilation; ///< of what went wrong; if done: the times of all frames together
+    Compilation compilation; ///< of the fault; if done: the times of all frames together
     std::string frame; ///< if not done: the frame that it went wrong at, e.g. "frame 17 of 60 (--steps 4)"
     std::size_t drawn = 0;     ///< frames
     std::size_t found = 0;     ///< frames that an earlier run had drawn
@@ -82,7 +82,7 @@ struct AnimationOutcome {
     double seconds = 0;
 };
 
-/// How many moments a frame of moving things is the mean of.
+/// Number of moments whose mean a frame of moving things is.
 int moments_of_exposure(Quality quality);
 
 /// Draws the frames that are not there yet and puts them together. All models that are shown are analysed

@@ -7,7 +7,7 @@ namespace graftal {
 
 namespace {
 
-/// Of the light of what is culled. Other pictures keep POV-Ray's steps, to be equal to its.
+/// Steps of culled parts' light in sampled pictures. Others keep POV-Ray's, to be equal to its pictures.
 constexpr int light_steps_of_samples = 128;
 
 /// Whether pixels are estimated, by samples that differ.

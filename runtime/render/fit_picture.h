@@ -14,8 +14,8 @@ struct PreparedView;
 /// Where POV-Ray's pictures end, and whether soft light is listed.
 ShaderLimits limits_of(const TraceModel& model, const RenderOptions& options);
 
-/// How the native engine will draw a view: the detail with the work that goes for this light, and the samples
-/// that are wanted.
+/// The native engine's plan for a view: the detail, with the work that goes for this light, and the wanted
+/// samples.
 struct PicturePlan {
     bool sampled = false; ///< pixels are estimated, by samples that differ
     DetailOptions detail;
@@ -28,7 +28,7 @@ FittedModel fit_picture(const PreparedView& prepared, const RenderOptions& optio
                         const std::function<bool()>& cancelled,
                         const std::function<void(const TraceModel&, double)>& on_first_look = {});
 
-/// What a fitted model needs in order to be made again, without a ray.
+/// The values of a fitted model that model_of() needs to make it again, without a ray.
 PictureFit fit_of(const FittedModel& fitted, ImageSize size);
 
 /// The model that was fitted, made from the options of the same picture.

@@ -16,9 +16,9 @@ namespace graftal {
 
 namespace {
 
-/// Rays of the first piece of a look; each piece has at most so many times as many as all before it. The last
-/// is close, one ray for so many pixels: a hundredth of a picture may take all of the work, and a still
-/// smaller share of it is seldom met.
+/// Rays of the first piece of a look, and the most rays of a piece for each ray before it. The last piece is
+/// close, with a ray for each `pixels_a_ray` pixels. A hundredth of a picture may take all of the work; a
+/// still smaller share is seldom met.
 constexpr std::uint64_t first_piece = 16, growth_of_pieces = 4, pixels_a_ray = 16, least_last = 256;
 /// Rays that are traced before a picture is drawn by what they took.
 constexpr std::uint64_t rays_before_draft = 64;
@@ -36,11 +36,10 @@ constexpr int steps_between = 8;
 /// All is made anew after the memory did not suffice: few tries must do.
 const double coarser_after_memory = std::pow(coarser, 3);
 constexpr std::uint64_t fewest_visits = 16;
-/// The share of what is allowed that shells may take: a look that takes more is broken off, as the picture
-/// would take more, too.
-/// It is taken for one that takes so many times what is allowed.
+/// The share of the allowed work that shells may take: a look that takes more is broken off, as the picture
+/// would take more, too. Such a look counts as `broken_off` times the allowed work.
 constexpr double most_for_shells = 0.5, broken_off = 4;
-/// After so many the picture is made as coarse as may be.
+/// Number of broken looks after which the picture is made as coarse as may be.
 constexpr int most_broken_looks = 2;
 
 /// The price of a model, in seconds of one processor.
@@ -314,8 +313,8 @@ class Fitting {
     Price price_;       ///< of the model
     double factor_ = 1; ///< of its error
     bool drafted_ = false;
-    double failed_seconds_ = 0; ///< that models took for which the memory did not suffice
-    double tried_seconds_ = 0;  ///< that rays, shells and weights took
+    double failed_seconds_ = 0; ///< of models that ran out of memory
+    double tried_seconds_ = 0;  ///< of rays, shells and weights
     int broken_looks_ = 0;
 };
 

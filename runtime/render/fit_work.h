@@ -14,10 +14,10 @@ struct FittedModel {
     std::unique_ptr<TraceModel> model;
     Sampling sampling;          ///< for which the work suffices; at most the one that is wanted
     double seconds = 0;         ///< of one processor that the picture will take, about (detail/work.h)
-    double whole_seconds = 0;   ///< that it would have taken as it was asked for
-    double sample_seconds = 0;  ///< that one sample for each pixel takes
-    double tried_seconds = 0;   ///< that trying took of the work
-    double error_px = 0;        ///< of what is culled now
+    double whole_seconds = 0;   ///< of the picture as it was asked for
+    double sample_seconds = 0;  ///< of one sample for each pixel
+    double tried_seconds = 0;   ///< of the work, for trying
+    double error_px = 0;        ///< of the parts that are culled now
     bool rays_cut = false;      ///< each ray goes into fewer parts than it wants
     bool out_of_memory = false; ///< the error is not for the work alone
 };
@@ -39,10 +39,10 @@ struct FitRequest {
 };
 
 /// Tries rays over the whole picture, and predicts what all of them take. Where that is more than
-/// options.work_seconds, what is culled grows and samples go, both evenly, such that the picture looks least
-/// the worse for it (loss_of_samples()); at last rays are given up sooner. What is culled grows also where a
-/// model takes more memory than there is (`out_of_memory`); if none fits, std::bad_alloc is thrown. Nothing
-/// but counts decides, so the result is the same whatever the machine and its threads.
+/// options.work_seconds, it culls more and takes fewer samples, so that the picture looks least the worse
+/// for it (loss_of_samples()); at last it gives rays up earlier. It also culls more where a model takes more
+/// memory than there is (`out_of_memory`). If none fits, it throws std::bad_alloc. Only counts decide, so
+/// the result is the same whatever the machine and its threads.
 FittedModel fit_work(FitRequest request);
 
 } // namespace graftal

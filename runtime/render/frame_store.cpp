@@ -89,7 +89,7 @@ bool FrameStore::is_frame_name(const std::string& name) const {
 }
 
 void FrameStore::tidy() const {
-    // As PendingFile names them.
+    // PendingFile names half-written frames so.
     for (const std::string& name : names_in(directory_))
         if (name.starts_with("." + std::string(prefix)) && name.ends_with(suffix)) {
             std::error_code ignored;
@@ -98,7 +98,7 @@ void FrameStore::tidy() const {
 }
 
 void FrameStore::remove() const {
-    // Those of the animation are known without a look at them or at the directory, which may fail.
+    // Names of the animation's own frames are known without a look at the directory, which may fail.
     for (const std::string& path : paths())
         ::unlink(path.c_str());
     std::error_code ignored;

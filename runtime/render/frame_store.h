@@ -23,12 +23,12 @@ class FrameStore {
     /// Makes the directory if it is missing, and locks it (flock): fails where another run is at work in it.
     /// A directory that was made here and has nothing in it in the end goes with this.
     Status create();
-    /// The same without the lock: many may draw in it, each its own frames.
+    /// Does the work of create() without the lock: many may draw in it, each its own frames.
     Status join();
 
     const std::string& directory() const { return directory_; }
     std::size_t count() const { return count_; }
-    /// Of a frame, from 0: frame_0001.png and so on, with as many digits as the last one needs.
+    /// File name of a frame, from 0: frame_0001.png and so on, with as many digits as the last needs.
     std::string name(std::size_t frame) const;
     std::string path(std::size_t frame) const { return directory_ + "/" + name(frame); }
     std::vector<std::string> paths() const;

@@ -74,7 +74,7 @@ void report_work(const FittedModel& fitted, const Asked& asked, Diagnostics& dia
         warn_of_limit(asked.span, limit, error, diagnostics);
         return;
     }
-    // Who asks for nothing is told before the picture starts (on_start); for noise see report_noise().
+    // Users who ask for nothing learn it before the picture starts (on_start); for noise see report_noise().
     if (!fewer || asked.by_default || wanted.noise_255 > 0) return;
     diagnostics
         .warning(asked.span, fmt::format("{} allow {}, not {:g}", limit.allowed,
@@ -206,7 +206,7 @@ bool prepare_model(PictureSession& session, const StageOptions& stages, Prepared
     return model.prepared != nullptr;
 }
 
-/// As trace_model(), by a fit that is known: whoever found it has said what the work has cost.
+/// trace_model() by a known fit: the program that found it has said what the work has cost.
 std::optional<NativeReport> trace_fitted(const PreparedView& prepared, const RenderOptions& options,
                                          const Stopwatch& preparing, const CancelFlag& cancel,
                                          Compilation& compilation, const PictureSink& sink) {
@@ -228,8 +228,8 @@ constinit const Engine native_engine = {
     .name = "native",
     .summary = "graftal's own ray tracer",
     .available = []() -> Status { return {}; },
-    // What it does anyhow is fine: it has no POV-Ray to take --memory, and it goes into every part, as
-    // --flatten wants it.
+    // Two options are fine, since it acts so anyhow: it has no POV-Ray to take --memory, and it goes into
+    // every part, as --flatten wants it.
     .refusal = [](const RenderOptions& options) -> std::string {
         if (options.aovs && !is_exr_name(options.output))
             return "--aovs: only an EXR has room for more channels: name the picture with '-o FILE.exr'";

@@ -13,15 +13,15 @@ namespace graftal {
 /// graftal's own tracer.
 extern const Engine native_engine;
 
-/// What came of a rendering, for the summary.
+/// Results of a rendering, for the summary.
 struct NativeReport {
     TraceStatistics rays;
     double seconds = 0;               ///< of tracing
     double first_picture_seconds = 0; ///< from the beginning of the call until a picture was there
     double samples_a_pixel = 0;       ///< of the picture that is there, all over
     bool fewer_where_calm = false;    ///< a pixel has fewer samples where they agree
-    double error_px = 0;              ///< of what is culled; 0 where nothing is
-    bool finished = false;            ///< it is as it was asked for
+    double error_px = 0;              ///< of culled parts; 0 where none are
+    bool finished = false;            ///< the picture is as it was asked for
     double finer_samples_a_pixel = 0; ///< if an interruption left it: of the part that is finer
     double finer_share = 0;           ///< of its area
     int pictures = 0;                 ///< written
@@ -39,7 +39,7 @@ std::optional<NativeReport> render_natively(PictureSession& session, const Rende
 std::optional<PictureFit> fit_natively(PictureSession& session, const RenderOptions& options,
                                        Compilation& compilation);
 
-/// What rays go through: the detail is resolved() for the view, and the graph prepared for both.
+/// The model that rays go through: the detail is resolved() for the view, and the graph prepared for both.
 struct PreparedView {
     std::shared_ptr<const ViewedModel> viewed;
     DetailOptions detail;
@@ -47,7 +47,7 @@ struct PreparedView {
     ModelTextures textures;
 };
 
-/// What follows the compiler in render_natively(). `preparing` runs since the preparation began.
+/// Traces after the compiler, for render_natively(). `preparing` runs since the preparation began.
 std::optional<NativeReport> trace_model(const PreparedView& model, const RenderOptions& options,
                                         const Stopwatch& preparing, const CancelFlag& cancel,
                                         Compilation& compilation, const PictureSink& sink = {});

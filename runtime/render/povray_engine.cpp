@@ -65,7 +65,7 @@ Status finish_picture(const PovrayJob& job, const RenderOptions& options, const 
     return write_image(options.output, image, options.format, options.metadata);
 }
 
-/// What POV-Ray must count as finite objects: every placement but those of planes.
+/// Number of finite objects that POV-Ray must count: every placement except those of planes.
 std::uint64_t finite_objects(const Cut& cut) {
     std::uint64_t count = 0;
     for (const PlacementGroup& group : cut.groups)
@@ -110,7 +110,7 @@ PovrayJob job_for(const RenderOptions& options, const View& view) {
             tell({name_of(progress.stage), progress.fraction});
         };
     job.unconfined = options.unconfined;
-    // What POV-Ray takes is estimated before; the limit is for what goes wrong.
+    // POV-Ray's memory is estimated before; the limit is for errors of that.
     job.memory_bytes = 2 * options.compile.detail.memory_bytes + (1ull << 30);
     return job;
 }
@@ -134,7 +134,7 @@ Status prepare(const CompiledModel& model, const RenderOptions& options, Texture
     return status;
 }
 
-/// What POV-Ray's picture lacks.
+/// Notes on light that POV-Ray's picture lacks.
 void note_lacks(const CompiledModel& model, Diagnostics& diagnostics) {
     const Graph& graph = model.model->graph;
     const View& view = model.view;
@@ -160,8 +160,8 @@ struct FollowedLights {
     std::size_t count = 0;
 };
 
-/// Those that it can follow in so many seconds, as soft as the quality asks at most. Fewer show their number
-/// as bands in the shadows.
+/// Lights that POV-Ray can follow in these seconds, at most as soft as the quality asks. Fewer show their
+/// number as bands in the shadows.
 FollowedLights affordable_lights(const View& view, double seconds_a_light, double seconds,
                                  std::size_t asked_count) {
     constexpr LightListSize least{.disc = 2, .dome = 6, .area = 4};
@@ -176,7 +176,7 @@ FollowedLights affordable_lights(const View& view, double seconds_a_light, doubl
     return {size, size == asked ? asked_count : listed_lights(view, size).size()};
 }
 
-/// Of the work that the picture may take. POV-Ray's other rays, and what is not foreseen, need the rest.
+/// The lights' share of the picture's work. POV-Ray's other rays, and unforeseen work, need the rest.
 constexpr double share_for_lights = 0.5;
 
 FollowedLights followed_lights(const CompiledModel& model, double seconds_a_light, double work_seconds,
@@ -206,8 +206,8 @@ struct PovrayTime {
     double seconds() const { return parsing + tracing; }
 };
 
-/// By the boxes that rays meet. Scenes of random models took 0.01 to 0.4 microseconds for a box, and those
-/// with shadows from outside the picture more.
+/// Seconds for a light, by the boxes that rays meet. Scenes of random models took 0.01 to 0.4 microseconds
+/// for a box, and those with shadows from outside the picture more.
 double seconds_a_light(const PovrayJob& job, double overlap) {
     const double rays_a_pixel = job.antialias ? 1.5 * std::pow(4.0, *job.antialias - 1) : 1;
     // Measured under one sun: the way to each light is another ray.

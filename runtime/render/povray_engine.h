@@ -7,7 +7,7 @@ namespace graftal {
 /// POV-Ray, as a child process.
 extern const Engine povray_engine;
 
-/// What came of a rendering by POV-Ray.
+/// Results of a rendering by POV-Ray.
 struct PovrayReport {
     double leaf_count = 0;
     std::uint64_t placement_count = 0;

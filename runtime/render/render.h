@@ -13,23 +13,23 @@
 
 namespace graftal {
 
-/// How far a picture is.
+/// Progress of a picture.
 struct DrawProgress {
     std::string_view stage;         ///< such as "tracing"
     std::optional<double> fraction; ///< of the stage, in [0, 1], where it is known
     double samples = 0;             ///< a pixel that has been looked at so often; 0: unknown
 };
 
-/// What an engine says before it starts on a picture: within a factor of two or so where seconds are many.
+/// An engine's words before it starts on a picture: right within a factor of two or so for many seconds.
 struct DrawStart {
     double seconds = 0;       ///< of one processor that it will take
-    double whole_seconds = 0; ///< that the picture as it was asked for would take
+    double whole_seconds = 0; ///< of one processor, for the picture as asked
     std::string fewer;        ///< "4 samples per pixel in place of 64": what it does without, though nobody
                               ///< asked for less work; or ""
 };
 
-/// How much is culled of a model, and how many rays its picture takes, so that its work is within limits
-/// (fit_work.h). To find that takes rays all over the picture; who draws parts of it finds it once.
+/// The culling of a model and the rays of its picture, so that its work is within limits (fit_work.h). To
+/// find the fit takes rays all over the picture. A program that draws parts of it finds the fit once.
 struct PictureFit {
     ImageSize size; ///< of the whole picture
     double error_px = 0;
@@ -50,8 +50,8 @@ struct RenderOptions {
     SampleFormat format = SampleFormat::srgb8; ///< of a PNG; an EXR is linear anyhow
     std::optional<int> antialias = 2;          ///< up to 4^(N-1) samples a pixel; nothing: one
     std::optional<int> samples;                ///< of soft light, the most a pixel; nothing: by the quality
-    std::optional<double> noise_255;           ///< that may be left; nothing: by the quality
-    std::optional<double> work_seconds;        ///< that limit_work() has set; nothing: by the quality
+    std::optional<double> noise_255;           ///< largest error left; nothing: by the quality
+    std::optional<double> work_seconds;        ///< from limit_work(); nothing: by the quality
     std::uint64_t sequence = 0;                ///< TraceControl::sequence
     /// The part to be drawn, in pixels of the picture: with the bits that they have in the whole.
     std::optional<Tile> tile;
@@ -78,7 +78,7 @@ struct RenderOptions {
     void limit_work(double seconds) { compile.detail.work_seconds = work_seconds.emplace(seconds); }
 };
 
-/// What came of one picture, or of many.
+/// Results of one picture, or of many.
 struct DrawReport {
     std::string summary;            ///< of one picture, for people
     std::optional<double> error_px; ///< the largest, by an engine that bounds it
@@ -91,7 +91,7 @@ struct DrawReport {
 
 /// One way from a viewed model to a picture: a row of the table of engines.
 struct Engine {
-    std::string_view name;    ///< as `--engine` takes it
+    std::string_view name;    ///< word for `--engine`
     std::string_view summary; ///< for --help
 
     /// Fails, with advice, if the engine is not on this machine.
@@ -111,7 +111,7 @@ struct Engine {
                                       Compilation& compilation);
 };
 
-/// All engines; the first is the one for who names none, or this:
+/// All engines; the first one draws where nobody names one, or names this:
 std::span<const Engine> engines();
 inline constexpr std::string_view auto_engine = "auto";
 

@@ -8,7 +8,7 @@
 
 namespace graftal {
 
-/// What a quality asks for: the most samples of a pixel, and the noise that is left.
+/// Goal of a quality: the most samples of a pixel, and the noise that is left.
 struct SampleGoal {
     int most_samples = 0;
     double noise_255 = 0;
@@ -20,17 +20,17 @@ SampleGoal sample_goal(Quality quality);
 /// `seconds_a_sample`: of a picture with one sample a pixel. No look where the finest is there as soon.
 std::vector<Sampling> looks_before(const Sampling& finest, double seconds_a_sample, double soon_seconds);
 
-/// The samples of one processor that meet nothing take so many seconds: no coarser model takes less.
+/// Seconds of one processor for samples that meet nothing: no coarser model takes less.
 double least_seconds(const Sampling& sampling, ImageSize size);
 
-/// The finest sampling up to `wanted` that has at most so many samples a pixel. Below one, pixels share
-/// samples in blocks, of coarsest_block pixels a side at most.
+/// The finest sampling up to `wanted` that has at most `samples_a_pixel`. Below one, pixels share samples in
+/// blocks, of coarsest_block pixels a side at most.
 Sampling affordable_sampling(const Sampling& wanted, double samples_a_pixel);
 inline constexpr int coarsest_block = 8;
 
-/// How much worse a picture looks by a sampling than by the one wanted, in octaves of the size of what is
-/// left out: 1 is as bad as parts twice as large that are missing. Grows evenly as samples go: noise is
-/// better than parts that are missing, and these are better than pixels that are missing.
+/// Loss of a picture with `had` against `wanted`, in octaves of the size of what is left out: 1 is as bad as
+/// missing parts twice as large. Grows evenly as samples go. Noise is better than missing parts, and these
+/// are better than missing pixels.
 double loss_of_samples(const Sampling& wanted, const Sampling& had);
 
 } // namespace graftal

@@ -141,7 +141,7 @@ Status write_scene(const CompiledModel& model, const std::string& path, const Sc
 
 Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagnostics,
                    const CancelFlag& cancel) {
-    // By way of a file, since only the end of the text tells whether palettes are needed.
+    // A file holds the text first, since only its end tells whether palettes are needed.
     const OpenFile file(open_temporary_file());
     if (!file) return write_failure("a temporary file", errno);
     std::vector<PaletteImage> palettes;

@@ -23,7 +23,7 @@ struct SceneForm {
 Status write_scene(const CompiledModel& model, const std::string& path, const SceneForm& form,
                    TextureStore& textures, const CancelFlag& cancel = {});
 
-/// The same to standard output. A model that needs palette files is an error: there is nowhere to put them.
+/// Writes the scene to standard output. Fails if the model needs palette files: there is no place for them.
 Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagnostics,
                    const CancelFlag& cancel = {});
 

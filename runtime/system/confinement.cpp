@@ -22,7 +22,7 @@ constexpr int path_beneath = 1;
 constexpr std::uint64_t execute = 1 << 0, write_file = 1 << 1, read_file = 1 << 2, read_folder = 1 << 3,
                         rename_across = 1 << 13, truncate_file = 1 << 14, use_device = 1 << 15;
 constexpr std::uint64_t of_first_version = (1 << 13) - 1;
-/// What a rule about a file, not a folder, may grant.
+/// Rights that a rule about a file, not a folder, may grant.
 constexpr std::uint64_t of_files = execute | write_file | read_file | truncate_file | use_device;
 constexpr std::uint64_t reading = execute | read_file | read_folder;
 constexpr std::uint64_t no_tcp = 3; ///< neither bind nor connect
@@ -54,7 +54,7 @@ bool limit(int what, std::uint64_t most) {
     rlimit now = {};
     if (::getrlimit(static_cast<__rlimit_resource>(what), &now) != 0) return false;
     now.rlim_cur = std::min<rlim_t>(most, now.rlim_max);
-    // Of processor time the soft limit is a signal that says why, and the hard one the end.
+    // The soft limit of processor time is a signal that says why, and the hard one the end.
     now.rlim_max = what == RLIMIT_CPU ? std::min<rlim_t>(most + 5, now.rlim_max) : now.rlim_cur;
     return ::setrlimit(static_cast<__rlimit_resource>(what), &now) == 0;
 }

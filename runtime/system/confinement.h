@@ -6,8 +6,8 @@
 
 namespace graftal {
 
-/// What a child may use and touch. No core is dumped. Files are the kernel's business (Landlock, Linux 5.13
-/// and later): where it has none, or switched off, they are as open to the child as to us.
+/// Limits on a child. No core is dumped. Files are the kernel's business (Landlock, Linux 5.13 and later):
+/// where it has none, or switched off, they are as open to the child as to us.
 struct Confinement {
     std::uint64_t memory_bytes = 0; ///< of its own, for data; 0: no limit
     std::uint64_t file_bytes = 0;   ///< of the largest file that it writes; 0: no limit

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As the kernel has it.
+/// The kernel's own limit.
 constexpr int most_links = 40;
 
 constexpr std::uint32_t of_folder = IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR | IN_MASK_ADD;
@@ -122,7 +122,7 @@ void FileWatch::follow(const fs::path& path, const std::string& file, int most_l
         if (!watch(at.parent_path(), at.filename().string(), file) &&
             (is_limit(errno) || (errno == EACCES && type != fs::file_type::none)))
             return fail(at.parent_path().string(), errno);
-        type = fs::symlink_status(at, error).type(); // it may have come meanwhile
+        type = fs::symlink_status(at, error).type(); // the file may have come meanwhile
         if (type == fs::file_type::symlink && most_links > 0) {
             const fs::path target = fs::read_symlink(at, error);
             if (!error) follow(at.parent_path() / target, file, most_links - 1);

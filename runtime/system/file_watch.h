@@ -23,7 +23,7 @@ class FileWatch {
     FileWatch(const FileWatch&) = delete;
     FileWatch& operator=(const FileWatch&) = delete;
 
-    /// What cannot be watched, and why: the kernel has limits.
+    /// Fails for a file that cannot be watched, and says why: the kernel has limits.
     Status status() const;
 
     /// From now on changes of this file count.

@@ -110,7 +110,7 @@ Status read_below(const std::string& folder, std::string_view name, std::string&
         const ssize_t count = ::read(file.number(), text.data() + done, text.size() - done);
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) return failure(folder, name, errno);
-        if (count == 0) break; // it has become shorter
+        if (count == 0) break; // the file has become shorter
         done += static_cast<std::size_t>(count);
     }
     text.resize(done);

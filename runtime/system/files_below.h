@@ -29,7 +29,7 @@ std::optional<std::uint64_t> bytes_below(const std::string& folder, std::string_
 Status read_below(const std::string& folder, std::string_view name, std::string& text,
                   std::uint64_t most_bytes);
 
-/// Fails where the file, there or not, could not be opened by open_below(). For who opens a path by other
+/// Fails where open_below() could not open the file, there or not. For callers that open a path by other
 /// means, and right now.
 Status check_below(const std::string& folder, std::string_view name);
 

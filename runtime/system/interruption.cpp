@@ -45,7 +45,7 @@ Interruption::Interruption() {
     ::sigemptyset(&action.sa_mask);
     for (std::size_t i = 0; i < caught_signals.size(); ++i) {
         ::sigaction(caught_signals[i], nullptr, &previous[i]);
-        // What was ignored on purpose (nohup) stays ignored.
+        // Signals that were ignored on purpose (nohup) stay ignored.
         if (previous[i].sa_handler != SIG_IGN) ::sigaction(caught_signals[i], &action, nullptr);
     }
 }

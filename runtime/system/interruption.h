@@ -4,9 +4,9 @@
 
 namespace graftal {
 
-/// While one of these lives, SIGINT, SIGTERM and SIGHUP do not end the process but are remembered, so that
-/// temporary files can be removed and children stopped. May be nested; the last one to go restores the
-/// previous handling.
+/// Remembers SIGINT, SIGTERM and SIGHUP while one of these lives: they do not end the process. So temporary
+/// files can be removed and children stopped. May be nested; the last one to go restores the previous
+/// handling.
 class Interruption {
   public:
     Interruption();

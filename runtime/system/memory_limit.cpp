@@ -29,7 +29,7 @@ void limit_memory(std::uint64_t bytes) {
     const std::uint64_t wanted = memory_of("self", "VmData:") + bytes +
                                  stack_bytes * std::max(1u, std::thread::hardware_concurrency());
 #ifdef __GLIBC__
-    // What is large goes back to the kernel at once. Else holes that stages leave behind count against the
+    // Large blocks go back to the kernel at once. Else holes that stages leave behind count against the
     // next: the cut of a wood took 2.0 GiB where it now takes 1.7.
     ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
     ::mallopt(M_TRIM_THRESHOLD, 1 << 20);

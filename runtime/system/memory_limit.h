@@ -8,7 +8,7 @@ namespace graftal {
 /// std::bad_alloc. The kernel counts (RLIMIT_DATA), so that nothing is left out and nothing is slower.
 void limit_memory(std::uint64_t bytes);
 
-/// What limit_memory() was given last; 0: never called.
+/// The last value given to limit_memory(); 0: never called.
 std::uint64_t memory_limit();
 
 /// Gives a child the limit that this process had at first. Only system calls: for the time between fork and

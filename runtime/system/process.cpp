@@ -147,12 +147,12 @@ class Watch {
     std::uint64_t peak_bytes() const { return peak_bytes_; }
 
   private:
-    /// What the child has started goes with it: it must not outlive us, nor keep us waiting by holding
-    /// standard error. The group is the child's own until it is waited for.
+    /// Ends all that the child has started: it must not outlive us, nor keep us waiting by holding standard
+    /// error. The group is the child's own until it is waited for.
     bool take_leave(int& wait_status, rusage& usage) {
         ::kill(-child_, SIGKILL);
         pollfd text = {text_, POLLIN, 0};
-        constexpr int most_pieces = 1 << 10; // what a pipe may still hold, many times over
+        constexpr int most_pieces = 1 << 10; // many times more than a pipe may still hold
         for (int i = 0; i < most_pieces && text_ >= 0 && ::poll(&text, 1, 0) > 0; ++i)
             pass_text();
         pid_t ended = 0;

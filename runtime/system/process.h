@@ -18,7 +18,7 @@ struct ProcessOptions {
     std::vector<std::string> arguments; ///< [0] is the program: a path, or a name that find_program knows
     std::string directory;              ///< where it runs; empty: here
     std::vector<std::pair<std::string, std::string>> environment; ///< set on top of ours
-    /// Of our own environment the child sees only what programs need to be found: PATH and LD_LIBRARY_PATH.
+    /// The child sees only those of our variables that programs need to be found: PATH and LD_LIBRARY_PATH.
     bool clean_environment = false;
     std::optional<Confinement> confinement; ///< nothing: as free as we are
     /// Receives standard error as it comes. Standard input and output of the child are /dev/null.
@@ -29,11 +29,11 @@ struct ProcessOptions {
     double grace_seconds = 10;
 };
 
-/// How a child ended and what it used.
+/// The end of a child, and what it used.
 struct ProcessResult {
     Status status;          ///< fails only where the child could not be started or watched
     int exit_code = 0;      ///< -1 if a signal ended it
-    int signal = 0;         ///< that ended it, or 0
+    int signal = 0;         ///< the signal that ended it, or 0
     bool cancelled = false; ///< and ended by us for that
     double wall_seconds = 0;
     double user_seconds = 0;

@@ -39,7 +39,7 @@ std::string name_to_fill() {
 class Nursery {
   public:
     explicit Nursery(int how) : folder_(::open(parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-        // Who keeps it for ever (it is everybody's) must not keep us waiting.
+        // Another user who keeps the lock for ever (everybody may) must not keep us waiting.
         for (int tries = 0; tries < 50 && !held_; ++tries) {
             held_ = folder_ >= 0 && ::flock(folder_, how | LOCK_NB) == 0;
             if (!held_ && how == LOCK_EX) return;
@@ -87,7 +87,7 @@ bool remove_once(int folder) noexcept;
 
 /// Removes what an open folder holds.
 void empty_folder(int folder) noexcept {
-    constexpr int most_passes = 100; // what is removed may hide what comes after it
+    constexpr int most_passes = 100; // removed files may hide those that come after
     for (int pass = 0; pass < most_passes && !remove_once(folder); ++pass)
         ::lseek(folder, 0, SEEK_SET);
 }
@@ -115,7 +115,7 @@ bool remove_once(int folder) noexcept {
     }
 }
 
-/// Those that there are, for handlers of signals. What finds no place is left to the next run.
+/// All directories that there are, for handlers of signals. One that finds no place is left to the next run.
 SignalRegistry<TemporaryDirectory, 16> directories;
 
 } // namespace

@@ -11,8 +11,8 @@
 
 namespace graftal {
 
-/// What a pixel shows besides its light ("arbitrary output variables"). Means are over the samples that meet
-/// a surface, by their weights in the pixel; what has no mean is of the sample nearest to the pixel's middle.
+/// Values of a pixel besides its light ("arbitrary output variables"). Means are over the samples that meet
+/// a surface, by their weights in the pixel. Other values are of the sample nearest to the middle.
 struct AovPixel {
     float coverage = 0;                                   ///< share of the samples that meet a surface
     float depth = std::numeric_limits<float>::infinity(); ///< along the camera's direction, mean
@@ -27,7 +27,7 @@ inline constexpr std::uint32_t ground_node = SurfaceHit::no_node - 1;
 /// Row by row, top first.
 using AovPicture = std::vector<AovPixel>;
 
-/// What one sample meets first.
+/// The first surface that one sample meets.
 struct AovSample {
     bool met = false;
     double depth = 0;
@@ -65,7 +65,7 @@ class ObjectNumbers {
     explicit ObjectNumbers(const CutGraph& cut);
 
     std::uint32_t of(std::uint32_t node) const;
-    /// By number, from 1 on.
+    /// Names by number, from 1 on.
     const std::vector<std::string>& names() const { return names_; }
 
   private:

@@ -125,7 +125,7 @@ std::size_t split(Items items, int depth, std::size_t grain) {
             return whole;
         }
     }
-    return in_grains(items.size() / 2, items.size(), grain); // in one place, or too deep: any halves will do
+    return in_grains(items.size() / 2, items.size(), grain); // in one place, or too deep: take any halves
 }
 
 class TreeBuilder {
@@ -199,7 +199,7 @@ class TreeBuilder {
         return part.size() == 1 ? part.front().item : build(part, depth + 3) | BoxNode::inner;
     }
 
-    /// So that the last byte lies beyond the upper end, as it is computed.
+    /// The least step by which the last byte lies beyond the upper end, as it is computed.
     static float step_between(float lower, float upper) {
         float step = (upper - lower) / last_byte;
         while (lower + last_byte * step < upper)

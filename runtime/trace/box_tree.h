@@ -34,7 +34,7 @@ struct BoxedItem {
 /// outwards, as shares of the box of all. A lane that is not used repeats the one before it.
 struct PackedNode {
     std::array<float, 3> origin{}, step{};                            ///< a side lies at origin + byte * step
-    std::array<std::array<std::array<std::uint8_t, 8>, 3>, 2> side{}; ///< as a BoxNode's
+    std::array<std::array<std::array<std::uint8_t, 8>, 3>, 2> side{}; ///< BoxNode's sides
     std::uint32_t first = 0;                                          ///< an item is this and its offset
     std::uint8_t count = 0;
     std::array<std::uint8_t, 8> offset{};
@@ -46,7 +46,7 @@ inline constexpr std::uint32_t no_tree = std::numeric_limits<std::uint32_t>::max
 /// its root, or no_tree if there are no items. O(n log n), and no deeper than 64 levels. Reorders the items.
 std::uint32_t build_box_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes);
 
-/// The same with packed nodes at the end of `packed`, as few as can be, and nodes of others above them.
+/// Builds a tree with packed nodes at the end of `packed`, as few as can be, and other nodes above them.
 /// Requires numbers of items that are less than 256 apart.
 std::uint32_t build_packed_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes,
                                 std::vector<PackedNode>& packed);

@@ -7,7 +7,7 @@
 
 namespace graftal {
 
-/// Makes the rays of a picture, exactly those of POV-Ray 3.7 through the camera that compiler/emit writes.
+/// Makes the rays of a picture, exactly those of POV-Ray 3.7 through the camera that compiler/povray writes.
 class CameraRays {
   public:
     explicit CameraRays(const View& view);
@@ -17,7 +17,7 @@ class CameraRays {
     Ray through(double x, double y) const;
 
     bool has_lens() const { return lens_.radius > 0; }
-    /// The same from a place of the lens: `place` in [0, 1)^2 spreads evenly over its disc. Requires a lens.
+    /// through() from the lens: `place` in [0, 1)^2 spreads evenly over its disc. Requires a lens.
     Ray through(double x, double y, glm::dvec2 place) const;
 
   private:

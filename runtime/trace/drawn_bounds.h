@@ -24,7 +24,7 @@ bool keeps_axes(const Mat3& m);
 
 /// The box of an image of a primitive, exact. Not for planes.
 Box box_of_image(const Primitive& primitive, const Affine& place);
-/// box_of_image(), but somewhat larger where that is sooner found.
+/// box_of_image(), but somewhat larger where that is faster to find.
 Box box_about_image(const Primitive& primitive, const Affine& place);
 
 /// Requires a graph whose cycles contract. O(graph), and about as many pieces as are allowed: fewer make

@@ -15,7 +15,7 @@ EvenPart::Kind kind_of(const TraceModel& model, const TraceEdge& edge) {
     return primitive == PrimitiveKind::triangle ? EvenPart::Kind::triangle : EvenPart::Kind::primitive;
 }
 
-/// Of the parts in a tree of a node.
+/// Notes the parts in a tree of a node that lie within its reach.
 void note_within(const TraceModel& model, const TraceNode& node, std::uint32_t tree,
                  std::vector<EvenPart>& parts) {
     if (tree == no_tree || node.kind != TraceNode::Kind::parts) return;

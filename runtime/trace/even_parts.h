@@ -9,8 +9,8 @@ namespace graftal {
 
 struct TraceModel;
 
-/// What rays ask of an edge on their short way (traversal_even.h), in one line of the processor's caches:
-/// thousands of parts then fit into these.
+/// Data of an edge that rays need on their short way (traversal_even.h), in one line of the processor's
+/// caches: thousands of parts then fit into these.
 struct alignas(64) EvenPart {
     enum class Kind : std::uint8_t {
         node,

@@ -1,5 +1,5 @@
-// What singular maps crush, and what is as good as that. No ray can be taken into the frame of a set that has
-// no thickness there, so parts are placed in the world, one by one, and met there; as wide as they are drawn.
+// Intersections with parts that singular maps crush, or nearly. No ray can be taken into the frame of a set
+// without thickness. So parts are placed in the world, one by one, and met there, as wide as they are drawn.
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +24,8 @@ RayRange both(const RayRange& a, const RayRange& b) {
 
 } // namespace
 
-/// How far a ray is from the line or the plane in which the image of a singular map lies: the square of the
-/// distance is a t^2 + 2 b t + c.
+/// The line or the plane in which the image of a singular map lies, as a ray sees it. The square of the
+/// ray's distance from it is a t^2 + 2 b t + c.
 FlatImage::FlatImage(const Ray& ray, const Mat3& map, Vec3 point) {
     Vec3 longest = map[0], across(0.0);
     for (int i = 0; i < 3; ++i) {
@@ -119,7 +119,7 @@ bool Traversal::may_meet(const FlatPart& part, const RayRange& range) const {
 bool Traversal::meet_leaf(const Primitive& primitive, const Affine& world_from_leaf, bool faint,
                           const Ball& ball, const RayRange& range) {
     const double half_width = model_.projection.least_half_width(ball);
-    // Most are missed: a ball tells sooner than the leaf itself.
+    // Most leaves are missed: a test of a ball is faster than one of the leaf itself.
     const RayRange near =
         both({range.least, best_.t}, in_ball(ray_, widened_ball(primitive, world_from_leaf, half_width)));
     if (!(near.least <= near.most)) return false;
@@ -153,7 +153,7 @@ bool Traversal::meet_drawn(const Primitive& primitive, const Affine& drawn, cons
     return true;
 }
 
-/// What parts in the ball reach out of the image by, at most.
+/// The most by which parts in the ball reach out of the image.
 double Traversal::flat_width(const Ball& ball, double scale) const {
     const Projection& projection = model_.projection;
     const double half_width = projection.culls()
@@ -165,7 +165,7 @@ double Traversal::flat_width(const Ball& ball, double scale) const {
     return (1 - grazing) * half_width + farthest * flat_image_.thickness();
 }
 
-/// False for what lies as another part did that was met, or is to be met, as nearly as will do.
+/// False for a part that lies nearly as another did that was met, or waits to be met.
 bool Traversal::is_new(const FlatPart& part, double width) {
     const double cell = near_enough_share * width;
     if (!(cell > 0)) return true;
@@ -287,7 +287,7 @@ void Traversal::meet_flat_part(const FlatPart& part, const RayRange& range, std:
     }
 }
 
-/// Those of the run that the part is a range of; `ball`: about it, in the world.
+/// Meets the items of the run that the part is a range of. `ball`: about it, in the world.
 void Traversal::meet_flat_items(const FlatPart& part, const Ball& ball, const RayRange& range,
                                 std::uint32_t frame_number) {
     const std::uint32_t number = model_.edges[part.edge & ~from_cut].child;

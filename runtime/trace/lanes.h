@@ -17,14 +17,14 @@ using Float4 = float __attribute__((vector_size(16), aligned(16)));
 using Float8 = float __attribute__((vector_size(32), aligned(32)));
 using Byte8 = std::uint8_t __attribute__((vector_size(8), aligned(8)));
 using Int4 = std::int32_t __attribute__((vector_size(16), aligned(16)));
-/// What comparing gives: GCC and Clang do not agree on its elements.
+/// Type of the result of comparing: GCC and Clang do not agree on its elements.
 using Long4 __attribute__((aligned(32))) = decltype(Double4{} < Double4{});
 using Int8 = std::int32_t __attribute__((vector_size(32), aligned(32)));
 
 /// For functions that take or give vectors: how these are passed depends on the instructions.
 #define GRAFTAL_INLINE inline __attribute__((always_inline))
-/// The same for a lambda, after its parameters: Clang called one for SSE2 from AVX2, and four lanes were
-/// lost.
+/// GRAFTAL_INLINE for a lambda, after its parameters: Clang called one for SSE2 from AVX2, and four lanes
+/// were lost.
 #define GRAFTAL_INLINED_LAMBDA __attribute__((always_inline))
 
 /// Three lanes and a 0.
@@ -43,7 +43,7 @@ GRAFTAL_INLINE Float8 floats_of(const Double8& lanes) {
     return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-/// Of the first four lanes, or the others.
+/// The first four lanes, or the others.
 GRAFTAL_INLINE Double4 doubles_of(const Float8& lanes, int half) {
     const Float4 four = half == 0 ? __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3)
                                   : __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
@@ -70,8 +70,8 @@ struct LaneMap {
     }
 };
 
-/// By an operation with a scalar, which the compiler knows how to spread: a list of lanes it inserts one by
-/// one.
+/// Spreads a number by an operation with a scalar, which compilers do at once: they insert a list of lanes
+/// one by one.
 GRAFTAL_INLINE Double4 splat(double x) {
     return x - Double4{};
 }
@@ -99,7 +99,7 @@ GRAFTAL_INLINE double power_below(double x) {
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & 0x7ff0'0000'0000'0000);
 }
 
-/// 1 divided by a power of two; sooner told than a quotient.
+/// 1 divided by a power of two; faster than a quotient.
 GRAFTAL_INLINE double inverse_power(double power) {
     return std::bit_cast<double>(0x7fe0'0000'0000'0000 - std::bit_cast<std::uint64_t>(power));
 }
@@ -124,7 +124,7 @@ GRAFTAL_INLINE Double4 size_of(const Double4& x) {
     return x < 0 ? -x : x;
 }
 
-/// As largest_component(), of four vectors.
+/// largest_component() of four vectors.
 GRAFTAL_INLINE Double4 largest_of(const Double4& x, const Double4& y, const Double4& z) {
     const Double4 a = size_of(x), b = size_of(y), c = size_of(z);
     const Double4 ab = a < b ? b : a;

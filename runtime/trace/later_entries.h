@@ -1,7 +1,7 @@
 #pragma once
 
-// What rays are to look into later, the nearest at the end; only traversal.cpp and traversal_packets.cpp
-// include this.
+// Entries that rays are to look into later, the nearest at the end; only traversal.cpp and
+// traversal_packets.cpp include this.
 
 #include <bit>
 #include <cstddef>
@@ -43,8 +43,8 @@ struct Traversal::LaterEntries {
     }
     static GRAFTAL_INLINE std::uint32_t entry_in(std::int64_t key) { return static_cast<std::uint32_t>(key); }
 
-    /// Of boxes that a ray meets: the nearest one's key; the others are kept, the farthest first. Requires
-    /// some lanes; `key_of_lane`: by the least bit of some.
+    /// Key of the nearest box that a ray meets; the others are kept, the farthest first. Requires some
+    /// lanes; `key_of_lane`: by the least bit of some.
     template<typename KeyOfLane>
     GRAFTAL_INLINE std::int64_t nearest_of(std::uint32_t lanes, std::uint32_t frame,
                                            const KeyOfLane& key_of_lane) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t most_nodes = 5000;
 
-/// How much smaller than the root the last level is, at most.
+/// Largest scale of the last level, relative to the root.
 double last_scale(const CutGraph& cut, std::uint32_t root_steps) {
     double largest = 0;
     for (const CutNode& node : cut.nodes)
@@ -59,7 +59,7 @@ class Layering {
         result_.cut.nodes.push_back(std::move(node));
     }
 
-    /// The same parts, of the copies of their primitives.
+    /// A cell of the same parts, of the copies of their primitives.
     std::shared_ptr<const RunCell> copy_of(const std::shared_ptr<const RunCell>& cell) {
         std::shared_ptr<const RunSource>& source = sources_[cell->source.get()];
         if (!source) {

@@ -14,8 +14,8 @@ struct LayeredGraph {
     std::vector<NodeId> source; ///< by node: which of the graph's it is
 };
 
-/// The layers for so many levels of the root; the graph itself if they are not limited, or so many that what
-/// is drawn is all but the limit set.
+/// The layers for `root_steps` levels of the root. The graph itself if these are not limited, or so many
+/// that the picture is that of the limit set.
 LayeredGraph layered(const CutGraph& cut, std::uint32_t root_steps);
 
 } // namespace graftal

@@ -16,7 +16,7 @@ double half_area(const Box& box) {
 /// To meet a group takes about as long as to meet two triangles.
 constexpr double cost_of_group = 2;
 
-/// How many edges from the first on are better met as a group; 1 if none are. `box`: of all of them.
+/// Number of edges from the first on that are better met as a group; 1 if none are. `box`: of all of them.
 std::uint32_t group_at(const TraceModel& model, std::span<const std::uint32_t> numbers, Box& box) {
     const bool similar = model.edges[numbers.front()].similarity;
     const auto is_triangle = [&](std::uint32_t number) {

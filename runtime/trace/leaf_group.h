@@ -27,7 +27,7 @@ struct LeafGroup {
         : first(item & ((1u << shift) - 1)), count(2 + (item >> shift & 3)) {}
     LeafGroup(std::uint32_t first_edge, std::uint32_t edges) : first(first_edge), count(edges) {}
 
-    /// As an item of a tree. Requires 1 <= count <= most.
+    /// The group as an item of a tree. Requires 1 <= count <= most.
     std::uint32_t item() const { return count < 2 ? first : mark | (count - 2) << shift | first; }
 
   private:
@@ -35,7 +35,7 @@ struct LeafGroup {
     static constexpr int shift = 28;
 };
 
-/// These edges as items of a tree, in groups where that is sooner met; without those that draw nothing.
+/// Items of a tree for these edges, in groups where rays meet these faster; without edges that draw nothing.
 /// Requires fewer than 2^28 edges.
 std::vector<BoxedItem> grouped_items(const TraceModel& model, std::span<const std::uint32_t> numbers);
 
@@ -51,8 +51,8 @@ struct alignas(64) EvenTriangles {
     bool similar = true; ///< the edges are similarities; else none is
 };
 
-/// Of the groups in the model's trees; in a part that begins a group, `group` is the number of its triangles.
-/// Requires the parts of all edges.
+/// Lanes for the groups in the model's trees. In a part that begins a group, `group` is the number of its
+/// triangles. Requires the parts of all edges.
 std::vector<EvenTriangles> even_triangles(const TraceModel& model, std::vector<EvenPart>& parts);
 
 } // namespace graftal

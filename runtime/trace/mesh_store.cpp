@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t most_triangles = 6'000'000;
 constexpr int endless = 1 << 20;
-/// How many octaves of sizes share a mesh.
+/// Octaves of sizes that share a mesh.
 constexpr double octaves = 0.5;
 
 /// Rounded up to steps.

@@ -57,7 +57,7 @@ class MeshStore {
     /// Keeps a reference. `most_shell_work`: points moved for one shell; it gets coarser by that.
     MeshStore(const PreparedCut& prepared, std::uint64_t most_shell_work);
 
-    /// What one mesh serves.
+    /// The views of a node that one mesh serves.
     struct Key {
         NodeId node = 0;
         std::uint32_t steps = 0;
@@ -65,15 +65,15 @@ class MeshStore {
         auto operator<=>(const Key&) const = default;
     };
 
-    /// The shell of a crowded node where a unit of its frame has this detail (detail.h).
+    /// The shell of a crowded node where a unit of its frame has this detail (Projection).
     Key key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps, double detail_per_unit) const;
-    /// That a shell was seen whose cells have this detail there (detail.h).
+    /// Notes a shell that was seen with cells of this detail there (Projection).
     void note(double cell_detail);
 
     /// The largest detail of a cell that was seen so far, 0 if none was: more than 1 where shells had to be
     /// coarser.
     double coarsest_shell() const { return coarsest_shell_; }
-    /// What shells took so far, in moves of a point (work.h).
+    /// Work of shells so far, in moves of a point (WorkRates).
     std::uint64_t shell_work() const { return shell_work_; }
     /// From so much work on, a mesh that is not there yet is not made: mesh() gives an empty one. For looks
     /// that are given up then. Requires that nobody asks for meshes meanwhile.

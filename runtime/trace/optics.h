@@ -11,8 +11,8 @@ namespace graftal {
 /// that of what the light is in; `cosine`: to the normal, in [0, 1]. 1 where all is reflected.
 double fresnel(double ior, double cosine);
 
-/// What a surface of this colour, as metallic as that, makes of white light: at grazing angles it stays
-/// white. POV-Ray's formula, an empirical one. `cosine`: to the normal.
+/// White light after a surface of this colour, as metallic as that: at grazing angles it stays white.
+/// POV-Ray's formula, an empirical one. `cosine`: to the normal.
 Rgb metal_colour(double metallic, Rgb rgb, double cosine);
 
 /// The solids that a ray is in. A surface is the boundary of its material's interior: the first one on the
@@ -20,7 +20,7 @@ Rgb metal_colour(double metallic, Rgb rgb, double cosine);
 /// it. (POV-Ray's trace.cpp: ComputeRelativeIOR, ComputeRefraction, ComputeShadowMedia.)
 class Inside {
   public:
-    /// Of the solid at a surface over that of what the ray is in, before it crosses.
+    /// Index of the solid at a surface over that of the solid that the ray is in, before it crosses.
     double relative_ior(const Interior& interior) const;
     /// Crosses a surface; gives the index on this side over the one on the other. Beyond eight solids in each
     /// other it keeps to those it is in.

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a packet of rays remembers on its way (traversal_packet.h).
+// Memory of a packet of rays on its way (traversal_packet.h).
 
 #include <array>
 #include <cstddef>
@@ -19,7 +19,7 @@ struct Traversal::PacketRoom {
         Float8 least;
         float extreme[2][3];         ///< the least and the greatest of the origins, by axis
         float first_least;           ///< the least of `least`
-        Float8 most;                 ///< what is nearer than the rays' best hits is less than this
+        Float8 most;                 ///< parts nearer than the best hits begin before this
         std::uint32_t hits_then = 0; ///< hits of the packet when that was so
     };
 
@@ -51,7 +51,7 @@ struct Traversal::PacketRoom {
         static constexpr std::uint32_t packed = 1u << 31;   ///< marks a box of a PackedNode
     };
 
-    /// What some rays have met, as Best.
+    /// A hit that some rays share; see Traversal::Best.
     struct Hit {
         LaneMap world_from_leaf; ///< unless it is upright
         bool is_upright = false;
@@ -70,7 +70,7 @@ struct Traversal::PacketRoom {
     std::size_t top = 0; ///< entries in use
     std::vector<Hit> hits;
     std::vector<std::uint32_t> ways; ///< edges, one way after the other
-    /// Of a ray.
+    /// The best hit of a ray.
     struct Best {
         double t = 0;
         std::size_t hit = 0; ///< of `hits`

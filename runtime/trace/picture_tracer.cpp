@@ -30,7 +30,7 @@ constexpr int tile_size = 32;
 /// After which the noise is measured: enough to see rare light, and whole rounds of Sobol's sequence.
 constexpr int samples_a_round = 16;
 
-/// Of a probe, for one thread at a time.
+/// Rays of a probe, for one thread at a time.
 constexpr std::uint64_t probe_piece = 32;
 
 /// 1 / g and 1 / g^2 of the plastic number g, g^3 = g + 1: no rational is near their combinations.
@@ -62,7 +62,7 @@ class Worker {
         return trace_lattice(steps_of(sampling), seen, picture);
     }
 
-    /// As trace(), through points of the whole picture.
+    /// trace(), through points of the whole picture.
     bool probe(ImageSize size, std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t i = begin; i < end; ++i) {
             if (cancelled()) return false;
@@ -83,8 +83,8 @@ class Worker {
     }
 
   private:
-    /// A ray of a picture and the random numbers of its light, which are of no account where all light is
-    /// from points.
+    /// A ray of a picture and the random numbers of its light, which do nothing where all light is from
+    /// points.
     struct Sight {
         Ray ray;
         SampleStream random;
@@ -96,15 +96,15 @@ class Worker {
         return {rays_.through(x, y, place), random};
     }
 
-    /// By numbers of their own, wherever in the picture.
+    /// Sight by numbers of the point's own, wherever in the picture.
     Sight sight(double x, double y) const {
         return sight(x, y,
                      SampleStream(CounterRandom::scrambled(std::bit_cast<std::uint64_t>(x)),
                                   static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(y) >> 20)));
     }
 
-    /// Looks through so many points, neighbours together: sight_of(i) is the i-th, and take(i, light) gets
-    /// what comes from there, in order, and says whether to go on. False if it was cancelled.
+    /// Looks through `count` points, neighbours together: sight_of(i) is the i-th, and take(i, light) gets
+    /// its light, in order, and says whether to go on. False if it was cancelled.
     template<class SightOf, class Take> bool look(int count, const SightOf& sight_of, const Take& take) {
         constexpr int together = Surfaces::most_together;
         std::array<Ray, Surfaces::most_together> rays;
@@ -136,7 +136,7 @@ class Worker {
 
     bool cancelled() const { return control_.cancelled && control_.cancelled(); }
 
-    /// Of a pixel of the whole picture.
+    /// Index of a pixel of the whole picture.
     std::size_t index_in_window(int x, int y) const {
         return static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
                static_cast<std::size_t>(x - window_.x);
@@ -179,7 +179,7 @@ class Worker {
         return true;
     }
 
-    /// The same in all pixels.
+    /// Sets all pixels to one light.
     void show(Image& picture, const Tile& shown, const Rgb& rgb) {
         AovSum sum;
         sum.add(seen_, 1, 0);
@@ -284,7 +284,7 @@ class Worker {
     /// Adds what the sample at this place of the lattice has seen to the pixels that it belongs to.
     void add_seen(const Tile& tile, glm::ivec2 place, int steps) {
         const glm::ivec2 first = place / steps, edge(place.x % steps == 0, place.y % steps == 0);
-        const double weight = (2 - edge.x) * (2 - edge.y); // as in trace_row() and trace_lattice()
+        const double weight = (2 - edge.x) * (2 - edge.y); // the weights of trace_row() and trace_lattice()
         for (int y = std::max(first.y - edge.y, 0); y <= std::min(first.y, tile.height - 1); ++y)
             for (int x = std::max(first.x - edge.x, 0); x <= std::min(first.x, tile.width - 1); ++x) {
                 const glm::dvec2 offset =
@@ -317,7 +317,7 @@ class Worker {
     std::vector<AovSum> aov_sums_;
 };
 
-/// Those of the whole picture that have pixels in the window.
+/// Tiles of the whole picture that have pixels in the window.
 std::vector<Tile> tiles_of(ImageSize size, int block, const Tile& window) {
     const int side = std::max(1, tile_size / block) * block;
     std::vector<Tile> tiles;

@@ -32,16 +32,15 @@ inline Tile whole_of(ImageSize size) {
     return {0, 0, size.width, size.height};
 }
 
-/// What both hold; no pixels where that is nothing.
+/// The pixels of both tiles; no pixels where there are none.
 Tile common(const Tile& a, const Tile& b);
 
-/// How finely a picture is looked at: blocks of pixels that show what their middle does, or samples within
+/// Fineness of the look at a picture: blocks of pixels that show what their middle does, or samples within
 /// each pixel, on a lattice or at random.
 struct Sampling {
-    int block = 1; ///< pixels along each side of a block
-    std::optional<int>
-        antialias;        ///< with blocks of 1: the samples of `+A0.0 +AM2 +R<depth> -J` of POV-Ray, else one
-    int most_samples = 0; ///< with blocks of 1: so many through a filter, in place of a lattice
+    int block = 1;                ///< pixels along each side of a block
+    std::optional<int> antialias; ///< with blocks of 1: POV-Ray's samples by +A0.0 +AM2 +R<depth> -J, else one
+    int most_samples = 0;         ///< with blocks of 1: samples through a filter, in place of a lattice
     double noise_255 = 0; ///< fewer, where the error of a pixel is below this, in 255ths as it is shown
 
     /// Rays through a pixel, those that neighbours share counted once.
@@ -69,7 +68,7 @@ struct TraceControl {
     /// Null, or the samples that each pixel of the window has so far, by light that is sampled: a trace goes
     /// on after them, and then the picture is the one that a single trace of as many samples makes.
     std::vector<NoiseMeter>* samples = nullptr;
-    /// Of the samples' random numbers: pictures of different sequences differ in their noise.
+    /// Number of the samples' random sequence: pictures of different sequences differ in their noise.
     std::uint64_t sequence = 0;
     /// Asked before every ray, by all threads at once: one tile may hold millions of rays. Once it says true,
     /// no further ray is traced.
@@ -91,7 +90,7 @@ class PictureTracer {
     bool trace(const Sampling& sampling, const TraceControl& control, Image& picture,
                AovPicture* aovs = nullptr);
 
-    /// The same for a window of the picture, whose pixels have the very bits that they have in the whole:
+    /// Traces a window of the picture, whose pixels have the very bits that they have in the whole:
     /// `picture` and `aovs` hold nothing else. Requires a window that lies in the view.
     bool trace(const Sampling& sampling, const TraceControl& control, const Tile& window, Image& picture,
                AovPicture* aovs = nullptr);
@@ -101,7 +100,7 @@ class PictureTracer {
     /// R2 sequence: a Kronecker sequence of the plastic number). Shows nothing; false if it was cancelled.
     bool probe(std::uint64_t begin, std::uint64_t end, const TraceControl& control);
 
-    /// Of all traces so far.
+    /// Counts of all traces so far.
     const TraceStatistics& statistics() const { return statistics_; }
 
   private:

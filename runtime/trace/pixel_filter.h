@@ -12,7 +12,7 @@ class PixelFilter {
 
     PixelFilter();
 
-    /// Of u in [0, 1): the offset from the pixel's middle along one axis, in pixels.
+    /// Offset from the pixel's middle along one axis, in pixels, for u in [0, 1).
     double offset(double u) const;
 
   private:

@@ -13,13 +13,13 @@
 
 namespace graftal {
 
-/// Through so many clear places of one primitive's picture a ray goes on. A torus is crossed four times, a
+/// Most clear places of one primitive's picture that a ray goes through. A torus is crossed four times, a
 /// mesh any number of times.
 inline constexpr int most_crossings = 256;
 /// Allows for the rounding of what is a little more than enough.
 inline constexpr double surely_more = 1 - 1e-6;
 
-/// What is compiled for AVX2, if the machine may have it.
+/// Attribute of functions for AVX2, if the machine may have it.
 #if defined(__x86_64__)
 #define GRAFTAL_AVX2 __attribute__((target("avx2")))
 #else
@@ -57,7 +57,7 @@ template<Instructions instructions> GRAFTAL_INLINE std::uint32_t bits_of(const L
     return bits;
 }
 
-/// The same number in all lanes.
+/// One number in all lanes.
 template<Instructions instructions> GRAFTAL_INLINE Float8 spread(float x) {
 #if defined(__x86_64__) && !defined(__clang__)
     if constexpr (instructions == Instructions::avx2) {
@@ -78,7 +78,7 @@ GRAFTAL_INLINE Float8 lanes_in(const Float8& lanes, std::uint32_t mask, float ot
     return used ? lanes : spread<instructions>(other);
 }
 
-/// Of the lanes that have a bit.
+/// The greatest of the lanes that have a bit.
 template<Instructions instructions> GRAFTAL_INLINE float greatest(const Float8& lanes, std::uint32_t mask) {
     Float8 all = lanes_in<instructions>(lanes, mask, -std::numeric_limits<float>::infinity());
     all = greater(all, __builtin_shufflevector(all, all, 4, 5, 6, 7, 0, 1, 2, 3));
@@ -132,7 +132,7 @@ inline Box enlarged(const Box& box, Vec3 margin) {
     return {box.min - more, box.max + more};
 }
 
-// Most boxes that are met are met beside their part, and that is sooner told than where a ray meets it.
+// Most met boxes are met beside their part. To tell that is faster than to find where a ray meets the part.
 inline constexpr double surely_beside = 1 + 1e-9;
 
 /// Whether a ray goes by a line at this distance or more, for sure.

@@ -23,9 +23,9 @@ namespace {
 constexpr unsigned most_surfaces = 32;
 /// The share of a zenith that the emitted sky reaches (povray/emit/view.cpp).
 constexpr double most_zenith = 0.999999;
-/// As shadow_pixels, of what is mirrored: a tenth, as in POV-Ray.
+/// Distance of the start of mirrored rays, in pixels: a tenth of shadow_pixels, as in POV-Ray.
 constexpr double mirror_pixels = 1e-4;
-/// As these, in rounding errors of the coordinates.
+/// Least distance of a ray's start, as a share of the coordinates: some rounding errors.
 constexpr double least_share = 1e-12;
 
 bool is_finite(Vec3 v) {
@@ -58,7 +58,7 @@ struct Shader::Way {
     double counts;  ///< 0: there is none
     Vec3 direction; ///< of any length
 
-    /// Of a rough surface: less goes where its facets hide each other. `normal`: on the side that it goes to.
+    /// Lessens the way from a rough surface, whose facets hide each other. `normal`: on the side of the way.
     void roughen(Vec3 normal, double blur) {
         if (!(counts > 0)) return;
         const double left = unhidden(glm::dot(glm::normalize(direction), normal), blur);
@@ -66,7 +66,7 @@ struct Shader::Way {
         counts *= left;
     }
 
-    /// Of several, with this chance.
+    /// Makes up for a way that has been chosen out of several with this chance.
     void choose(double chance) {
         share /= chance;
         counts /= chance;
@@ -207,9 +207,9 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Kn
 }
 
 /// The way on from a surface, backwards along the light: its refracted ray, while the mirrored one waits.
-/// Where light may bounce, or has, it is one of them or one by the cosine, each with the chance that its
-/// light is of the three. False at the end. `scattered`: how much is by the cosine; `sky_later`: with the
-/// sky's light.
+/// Where light may bounce, or has, it is one of them or one by the cosine. Each has the chance of its share
+/// of the light of the three. False at the end. `scattered`: how much is by the cosine; `sky_later`: with
+/// the sky's light.
 bool Shader::goes_on(Path& path, const Point& point, double scattered, bool sky_later, SampleStream& random) {
     const double along = glm::dot(point.to_viewer, point.facet);
     const Material& material = *point.material;
@@ -267,7 +267,7 @@ double Shader::scattered_by(const Point& point) {
            largest(point.rgb);
 }
 
-/// By the cosine, to either side. `choice`: of the side, in [0, 1).
+/// Scatters a path by the cosine, to either side. `choice`: of the side, in [0, 1).
 bool Shader::scatter(Path& path, const Point& point, double choice, SampleStream& random) const {
     const double through = point.material->translucency, diffuse = point.material->diffuse + through;
     path.weight *= point.shone_on * point.body * diffuse * point.rgb;

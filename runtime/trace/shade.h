@@ -18,7 +18,7 @@
 
 namespace graftal {
 
-/// What POV-Ray leaves out of a picture.
+/// Parts of a picture that POV-Ray leaves out.
 struct ShaderLimits {
     /// Surfaces farther away along a ray. POV-Ray 3.7 meets nothing beyond 1e7 of its own units
     /// (PovrayUnits::scale to one of the model), which shows where the ground ends.
@@ -31,32 +31,31 @@ struct ShaderLimits {
 
 struct SkyChoice;
 
-/// Light, as POV-Ray 3.7 computes it for what graftal emits (compiler/emit): ambient, diffuse and specular
-/// light of suns and point lights with their shadows, mirrors, the ground and the sky. With the colour c of
-/// the surface, its normal n towards the viewer, the directions v to the viewer and l to a light of colour e,
-/// and h halfway between the two, the light along a ray is
+/// Light, as POV-Ray 3.7 computes it for the scenes of compiler/povray: ambient, diffuse and specular light
+/// of suns and point lights with their shadows, mirrors, the ground and the sky. Let c be the surface's
+/// colour, and n its normal towards the viewer. Let v be the direction to the viewer, l that to a light of
+/// colour e, and h halfway between v and l. The light along a ray is
 ///     ambient c + sum over the lights that are not shadowed, n.l > 0, of
 ///         (diffuse (n.l) c + specular (n.h)^(1/roughness)) e
 ///     + sum over those behind, n.l < 0, of translucency |n.l| c e + emission c
 ///     + reflection * (the light along the mirrored ray)
 ///     + transparency c * (the light along the refracted ray);
-/// what is transparent has so much less of the light that does not shine or mirror. With an index of
-/// refraction the reflection goes by Fresnel's formula, and what it takes is left out of all that does not
-/// shine; so is the reflection of what lets light through. Metals give highlights and reflections their
-/// colour. What is blurred mirrors and refracts by facets (facets.h), one for each sample. Within a solid,
-/// light fades as its interior says. Lights shine through on straight lines, coloured by each surface and
-/// interior. Shadowless lights are not shadowed and have no specular part. Light from discs and from the sky
-/// is the sum of the same over what is in them, e = L dw / pi: estimated by one direction for each (two where
-/// the sky is a picture with bright parts, by the balance heuristic: Veach 1997, 9.2.2), or by a list of
-/// lights (light_list.h), to which the estimate converges as the list grows. Of a sky that asks for bounces,
-/// surfaces light each other diffusely, and `ambient` is 0; the
-/// ray that looks for another surface looks for the sky too. A picture shows up to 32 surfaces one in the
-/// other; what the last of them shows is black. Nothing is clamped. (POV-Ray's trace.cpp: TraceRay,
-/// ComputeLightedTexture, ComputeOneDiffuseLight, ComputeSpecularColour, ComputeReflection,
-/// ComputeRefraction, ComputeShadowColour, ComputeSky.)
+/// a transparent surface has so much less of the light that does not shine or mirror. With an index of
+/// refraction the reflection goes by Fresnel's formula. That light is left out of all that does not shine; so
+/// is the reflection of a surface that lets light through. Metals give highlights and reflections
+/// their colour. A blurred surface mirrors and refracts by facets (facets.h), one for each sample. Within a
+/// solid, light fades as its interior says. Lights shine through on straight lines, coloured by each surface
+/// and interior. Shadowless lights are not shadowed and have no specular part. Light from discs and from the
+/// sky is the same sum over their parts, e = L dw / pi. It is estimated by one direction for each (two where
+/// the sky is a picture with bright parts, by the balance heuristic: Veach 1997, 9.2.2). Or a list of lights
+/// (light_list.h) gives it, to which the estimate converges as the list grows. Under a sky that asks for
+/// bounces, surfaces light each other diffusely, and `ambient` is 0; the ray that looks for another surface
+/// looks for the sky too. A picture shows up to 32 surfaces one in the other; the last of them shows black.
+/// Nothing is clamped. (POV-Ray's trace.cpp: TraceRay, ComputeLightedTexture, ComputeOneDiffuseLight,
+/// ComputeSpecularColour, ComputeReflection, ComputeRefraction, ComputeShadowColour, ComputeSky.)
 class Shader {
   public:
-    /// What some rays meet first, the ground left out.
+    /// The first surfaces that some rays meet, the ground left out.
     struct Ahead {
         std::array<SurfaceHit, Surfaces::most_together> hits;
         std::uint32_t met = 0; ///< one bit for each ray
@@ -75,13 +74,13 @@ class Shader {
     Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first = nullptr) {
         return radiance(ray, random, first, nullptr);
     }
-    /// The same of one of the rays that look_ahead() was asked for, by its number. What they meet first is
-    /// sooner found for neighbours of a picture together.
+    /// The light along one of the rays that look_ahead() was asked for, by its number. It finds first
+    /// surfaces faster for neighbours of a picture together.
     Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Ahead& ahead,
                  std::size_t number);
     /// Requires at most Surfaces::most_together rays.
     void look_ahead(std::span<const Ray> rays, Ahead& ahead);
-    /// The same where nothing is sampled.
+    /// The light along a ray where nothing is sampled.
     Rgb radiance(const Ray& ray) {
         SampleStream unused(0, 0);
         return radiance(ray, unused);
@@ -93,7 +92,7 @@ class Shader {
     /// True where radiance() estimates: more samples make a better picture.
     bool samples() const { return sky_ || !areas_.empty(); }
 
-    /// What the ray meets first, the ground included; false if that is the sky.
+    /// The first surface that the ray meets, the ground included; false if that is the sky.
     bool first_hit(const Ray& ray, SurfaceHit& hit);
 
   private:
@@ -113,7 +112,7 @@ class Shader {
     struct Path;
     struct Way;
 
-    /// Of a ray whose first surface is known; `hit` is null where there is none.
+    /// The known first surface of a ray; `hit` is null where there is none.
     struct Known {
         const SurfaceHit* hit;
     };
@@ -145,8 +144,8 @@ class Shader {
     Surfaces& surfaces_;
     const ShaderLimits limits_;
     std::vector<Lamp> lamps_;                 ///< without those that are black
-    std::vector<Area> areas_;                 ///< that are sampled
-    const SkyLight* sky_ = nullptr;           ///< that is sampled
+    std::vector<Area> areas_;                 ///< sampled ones
+    const SkyLight* sky_ = nullptr;           ///< null unless it is sampled
     const SkySampling* bright_sky_ = nullptr; ///< where it has bright parts
     std::vector<Path> waiting_;               ///< of the ray under way: what is to be followed still
     std::uint64_t work_ = 0, work_of_a_point_ = 0;

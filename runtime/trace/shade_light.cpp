@@ -13,9 +13,9 @@ namespace graftal {
 
 namespace {
 
-/// Which lie one behind the other before a light: more are as good as a wall.
+/// Most surfaces one behind the other before a light: more are as good as a wall.
 constexpr int most_panes = 1000;
-/// What is emitted is no smoother (povray/emit/textures.cpp).
+/// The least roughness that is emitted (povray/emit/textures.cpp).
 constexpr double least_roughness = 5e-4;
 /// e to the minus this is nothing, even of the brightest light.
 constexpr double dark_exponent = 40;
@@ -62,7 +62,7 @@ Rgb Shader::from_sky(const Point& point, double least, bool shine_only, SampleSt
     return light;
 }
 
-/// Of the sky in one direction, over what the strategies that may have chosen it give to it.
+/// Light of the sky in one direction, over its density by the strategies that may have chosen it.
 Rgb Shader::sky_light(const SkyChoice& choice, const Point& point, double body, Vec3 direction,
                       double least) {
     const Material& material = *point.material;

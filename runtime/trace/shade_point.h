@@ -11,11 +11,11 @@ namespace graftal {
 /// POV-Ray takes smaller cosines and lights for 0 (its EPSILON).
 inline constexpr double least_cosine = 1e-10;
 inline constexpr double least_light = 1e-10;
-/// How close to where they start rays meet nothing, in pixels. Where two surfaces touch, light leaks through
-/// so narrow a gap.
+/// Distance from their start within which rays meet nothing, in pixels. Where two surfaces touch, light
+/// leaks through so narrow a gap.
 inline constexpr double shadow_pixels = 1e-3;
 
-/// What a surface makes of white light on its way through.
+/// White light after its way through a surface.
 inline Rgb colour_of_pane(const Material& material, Rgb rgb) {
     const double filter = material.surface_filter();
     return material.transparency * (filter * rgb + Rgb(1 - filter));

@@ -18,7 +18,7 @@ inline Vec3 from_pole(Vec3 pole, double along, double turn) {
     return along * pole + radius * (std::cos(turn) * a + std::sin(turn) * b);
 }
 
-/// Of the half about a unit normal: its density is the cosine over pi.
+/// A direction in the half about a unit normal: its density is the cosine over pi.
 inline Vec3 cosine_direction(Vec3 normal, glm::dvec2 place) {
     return from_pole(normal, std::sqrt(1 - place.x), 2 * std::numbers::pi * place.y);
 }
@@ -28,8 +28,8 @@ inline Vec3 even_direction(Vec3 normal, glm::dvec2 place) {
     return from_pole(normal, 1 - place.x, 2 * std::numbers::pi * place.y);
 }
 
-/// How a surface chooses a direction towards the sky, by the cosine: of the half that it faces, or of the
-/// other if light comes through; if it shines, by half evenly.
+/// A surface's choice of a direction towards the sky, by the cosine: in the half that it faces, or in the
+/// other if light comes through. If the surface shines, half of the choices are even.
 struct SkyChoice {
     double front_chance = 1;
     bool shines = false;

@@ -16,7 +16,7 @@ Vec3 transformed_normal(const LaneMap& map, Vec3 normal);
 Vec3 limit_normal(const TraceModel& model, std::span<const std::uint32_t> path, std::uint32_t node,
                   Vec3 point);
 
-/// The same for a proxy that is met in the world, at this point, and has this normal there.
+/// The limit's normal for a proxy that is met in the world, at this point, and has this normal there.
 Vec3 limit_normal_in_world(const TraceModel& model, std::span<const std::uint32_t> path, Vec3 normal,
                            Vec3 point);
 

@@ -16,23 +16,23 @@ struct SurfaceHit {
     Vec3 normal{0, 1, 0};               ///< of unit length, to either side
     Rgb rgb{0.8};                       ///< opaque, all tints in front
     const Material* material = nullptr; ///< its finish; its rgb does not count
-    double light_share = 1; ///< of what shines on it, for what shades itself there (self_shadow.h)
-    /// Of the prepared graph: the last on the way from the root that is no primitive.
+    double light_share = 1;             ///< share of the light on it, less its own shade (self_shadow.h)
+    /// Number in the prepared graph of the last node on the way from the root that is no primitive.
     std::uint32_t node = no_node;
-    std::uint32_t levels = 0; ///< that the way has used up (graph.h, "Levels")
+    std::uint32_t levels = 0; ///< levels that the way has used up (graph.h, "Levels")
 
     static constexpr std::uint32_t no_node = UINT32_MAX;
 };
 
-/// What can be met by rays, in world space. One for each thread: looking may use its memory.
+/// Surfaces that rays can meet, in world space. One for each thread: looking may use its memory.
 class Surfaces {
   public:
     virtual ~Surfaces() = default;
 
     /// The first surface within the range, if there is one.
     virtual bool closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) = 0;
-    /// The same of several rays, at most most_together: one bit for each that meets something. Faster than
-    /// one by one where neighbours of a picture are asked for together.
+    /// The first surfaces of several rays, at most most_together: one bit for each that meets something.
+    /// Faster than one by one where neighbours of a picture are asked for together.
     virtual std::uint32_t closest_each(std::span<const Ray> rays, const RayRange& range,
                                        std::span<SurfaceHit> hits) {
         std::uint32_t met = 0;

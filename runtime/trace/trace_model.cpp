@@ -40,7 +40,7 @@ TraceNode::Kind kind_of(const CutNode& node) {
     return node.sealed ? TraceNode::Kind::crushed : TraceNode::Kind::parts;
 }
 
-/// Of more edges small groups are not spelt out where they are used: each use would take memory of its own.
+/// Most edges of a graph whose small groups are spelt out at each use, which takes memory.
 constexpr std::size_t most_edges_spelt_out = 200'000;
 
 /// Fills in nodes, edges and boxes of a model.
@@ -160,7 +160,7 @@ class ModelBuilder {
         return place->second;
     }
 
-    /// Room for the boxes of so many items more: growing in between would take twice as much.
+    /// Makes room for the boxes of `items` more: growing in between would take twice as much.
     void reserve_boxes(std::size_t items) {
         constexpr std::size_t items_a_packed_node = 8,
                               items_a_node = 48; // a little more nodes than there are
@@ -216,8 +216,8 @@ class ModelBuilder {
         std::optional<NodeId> holder = {}; ///< of a primitive, unless it is the node itself
     };
 
-    /// The instances, with the primitives of small groups in place of the groups: a box more to test is
-    /// sooner done than a frame more to enter. The unbounded ones come first.
+    /// The instances, with the primitives of small groups in place of the groups: a test of one more box is
+    /// faster than to enter one more frame. The unbounded ones come first.
     std::vector<Part> parts_of(const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) const {
         constexpr std::size_t most_parts = 4096;
         std::vector<Part> parts;
@@ -287,7 +287,7 @@ class ModelBuilder {
     std::map<const RunSource*, std::uint32_t> run_of_;
 };
 
-/// What a unit measures at the far end of the model, were it out of the picture.
+/// Least detail of a unit: at the far end of the model, were it out of the picture.
 double least_detail(const TraceModel& model) {
     const CutGraph& cut = model.prepared.cut;
     const Ball& ball = cut.nodes[cut.root].ball;
@@ -297,8 +297,8 @@ double least_detail(const TraceModel& model) {
     return model.projection.detail_per_unit(far) / Projection::coarser_out_of_sight;
 }
 
-/// How far terminals reach from the middle of what they stand for, where it is just cut, in lengths of the
-/// error.
+/// Farthest reach of terminals from the middle of the part that they stand for, where it is just cut, in
+/// lengths of the error.
 double farthest_terminal(const TraceModel& model) {
     double farthest = 0;
     for (const TraceNode& node : model.nodes)
@@ -334,14 +334,14 @@ bool is_even(const TraceModel& model) {
            std::ranges::all_of(model.edges, is_plain_edge);
 }
 
-/// Units that making a model may take of the work, where so many take a second; no more than usual.
+/// Units of work that making a model may take, by the units of a second; no more than usual.
 std::uint64_t share_of(double work_seconds, double units_a_second, std::uint64_t usual) {
     constexpr double share = 0.1;
     return static_cast<std::uint64_t>(
         std::min(share * work_seconds * units_a_second, static_cast<double>(usual)));
 }
 
-/// By node of the cut; none if rays come through everywhere.
+/// Sizes by node of the cut; none if rays come through everywhere.
 std::vector<ShellSizes> found_shell_sizes(TraceModel& model) {
     const CutGraph& cut = model.prepared.cut;
     // Sizes are asked for by octaves. An eighth of one tells them apart, and nodes of all sizes share kinds.
@@ -377,7 +377,7 @@ void find_shells(TraceModel& model) {
     }
 }
 
-/// Of one shell: there may be several, and they may be made anew at another error.
+/// Most work of one shell: there may be several, and they may be made anew at another error.
 std::uint64_t most_shell_work(const DetailOptions& options) {
     constexpr double share = 0.15, least = 1e6; // with less there is hardly one
     const double seconds = options.culls() ? std::min(share * options.work_seconds, 1e6) : 1e6;

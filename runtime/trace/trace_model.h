@@ -27,11 +27,11 @@
 
 namespace graftal {
 
-/// What a ray has met after so many parts of a set without thickness will do, if none can be nearer by more
-/// than this share of the half width that they are drawn with: thousands may lie in each other.
+/// Parts of a set without thickness after which a ray's best hit is near enough. No hit may be nearer by
+/// more than this share of the half width of the parts: thousands may lie in each other.
 inline constexpr std::uint64_t most_patience = 256;
 inline constexpr double near_enough_share = 0.25;
-/// As near as this will do at once: flat tops of parts in one plane are all as near.
+/// A hit so near is near enough at once: flat tops of parts in one plane are all as near.
 inline constexpr double plenty_share = 1e-4;
 
 inline constexpr std::uint32_t no_edge = UINT32_MAX;
@@ -54,13 +54,13 @@ struct alignas(64) TraceEdge {
     bool to_primitive = false; ///< leads to one
     LaneMap parent_from_child;
     LaneMap child_from_parent;
-    Box box;          ///< of what the child draws, in the parent's frame
+    Box box;          ///< holds the child's drawing, in the parent's frame
     double turns = 1; ///< of a primitive: length_in_turns() of the graph's instance
 
     void find_upright();
 };
 
-/// What the look of a hit asks of an edge on the way there, in one line of the processor's caches.
+/// Data of an edge for the look of a hit below it, in one line of the processor's caches.
 struct alignas(64) TraceLook {
     PathTint tint;
     std::uint32_t material = none;
@@ -69,8 +69,8 @@ struct alignas(64) TraceLook {
     std::uint32_t node = none;
     std::uint32_t child = 0;
     unsigned levels = 0;
-    /// Of an unrolling's edges that lead several levels down: the way is one of its edges or the node's, and
-    /// then one of that child's. `last` may be marked as one from a cut node.
+    /// Parts of the way, for an unrolling's edge that leads several levels down: one of its edges or the
+    /// node's, and one of that child's. `last` may be marked as one from a cut node.
     std::uint32_t before = no_edge, last = no_edge;
     std::uint16_t length = 1;    ///< of the way, in edges
     bool as_one = true;          ///< its tint, material and node are those of the whole way
@@ -79,8 +79,8 @@ struct alignas(64) TraceLook {
     static constexpr std::uint32_t none = UINT32_MAX;
 };
 
-/// What is some levels below a node, as if it were parts of its own: boxes are sooner tested than frames are
-/// entered. It may take the place of the node's edges where none of the nodes passed over would be cut or
+/// The parts some levels below a node, as if they were its own: boxes are faster to test than frames to
+/// enter. They may take the place of the node's edges where none of the nodes passed over would be cut or
 /// baked.
 struct Unrolling {
     std::uint32_t tree = no_tree;
@@ -88,12 +88,12 @@ struct Unrolling {
     /// Least diameter of a node passed over that may be culled, in the node's frame, by its cut_detail.
     double least_size = std::numeric_limits<double>::infinity();
     double flattest_edge = 1; ///< the least flatness on the ways
-    /// Of primitives: what is drawn of its parts if each is cut that can be. None where that is more than
-    /// primitives that are only scaled evenly and moved, or too many.
+    /// Tree of primitives: the drawing of its parts if each is cut that can be. None where some primitives
+    /// are not only scaled evenly and moved, or there are too many.
     std::uint32_t leaf_tree = no_tree;
     double most_size = -1; ///< the largest diameter of such a part, likewise; negative if there is none
-    /// The largest diameter of a part that is a speck where it is cut, by what it must measure to be one;
-    /// infinite if some part is none.
+    /// The largest diameter of a part that is a speck where it is cut, over the detail below which it is
+    /// one; infinite if some part is none.
     double most_speck_size = std::numeric_limits<double>::infinity();
     /// Levels that are left where no such part has any left; no_steps: never.
     std::uint32_t last_steps = no_steps;
@@ -115,14 +115,14 @@ struct alignas(64) TraceNode {
     double ball_radius = 0;
     double reach = 0; ///< from ball_centre; the balls of all nodes that unrollings pass over or lead to are
                       ///< within it
-    double cut_detail = 1; ///< from which down a cullable node is cut (detail.h)
+    double cut_detail = 1; ///< the largest detail at which a cullable node is cut
     Kind kind = Kind::parts;
     bool unending = false;
     bool cullable = true;
     bool faint = false;                ///< of no area (CutNode::shadowless)
-    bool widens = false;               ///< as CutNode's
+    bool widens = false;               ///< CutNode::widens
     std::uint32_t tree = no_tree;      ///< of its edges, or its items of the run
-    std::uint32_t stop_tree = no_tree; ///< of what is drawn where it is cut; none: its proxy
+    std::uint32_t stop_tree = no_tree; ///< tree of its drawing where it is cut; none: its proxy
     std::uint32_t first_edge = 0;      ///< of its edges, which follow each other
     std::uint32_t edge_count = 0;
     std::uint32_t endless_count = 0;   ///< of an unbounded union: the first of its edges, which `tree` lacks
@@ -179,7 +179,7 @@ struct TraceGround {
 /// A prepared graph made ready for rays, for one view. It is read by many threads.
 struct TraceModel {
     std::shared_ptr<const PreparedCut> shared; ///< never null; may be that of other views too
-    const PreparedCut& prepared;               ///< the same
+    const PreparedCut& prepared;               ///< *shared
     std::shared_ptr<TraceGround> ground;       ///< never null; models of other errors share it
     const LayeredGraph& layers;                ///< the ground's
     View view;
@@ -190,7 +190,7 @@ struct TraceModel {
     double terminal_reach = 0;        ///< of terminals from the middle of what they stand for, in errors
     double widest = 1;                ///< of all primitives: widened_reach()
 
-    std::vector<TraceNode> nodes; ///< as layers.cut.nodes
+    std::vector<TraceNode> nodes; ///< by number of layers.cut.nodes
     std::vector<TraceEdge> edges; ///< the first leads to the root, from world space
     std::vector<TraceLook> looks; ///< by edge
     std::vector<BoxNode> boxes;
@@ -211,22 +211,22 @@ struct TraceModel {
     bool has_shells = false;   ///< some node may be drawn as one
     std::uint64_t weighed = 0; ///< edges of kinds followed to find where (Weights)
     bool clear_texels = false; ///< some texture has them
-    /// All is bounded, drawn no wider than it is, opaque, and only scaled evenly and moved down to the
-    /// primitives: rays go through it sooner (traversal_even.h).
+    /// True if all is bounded, drawn no wider than it is, opaque, and only scaled evenly and moved down to
+    /// the primitives: rays go through it faster (traversal_even.h).
     bool even = false;
     std::vector<EvenPart> even_parts; ///< by edge, if it is
     std::vector<EvenOffset> even_offsets;
     std::vector<EvenTriangles> even_triangles; ///< of groups
 
-    /// Up to where a hit will do, if none can be nearer by more than this share of the half width: of a model
-    /// in a plane that is drawn in specks; else before all.
+    /// Distance up to which a hit is near enough, if none can be nearer by more than this share of the half
+    /// width: for a model in a plane that is drawn in specks. Else before all.
     double near_enough(const Ray& ray, double share) const;
     /// Whether rays may ask that: what they meet may then depend on the order of parts.
     bool is_content() const;
-    /// Of the box of such a model.
+    /// Thickness of the box of a content model, at most.
     double most_thickness() const { return 0.1 * most_half_width; }
 
-    /// Of the view's lights; measured when they are first asked for.
+    /// Shadows of the view's lights; measured when they are first asked for.
     const SelfShadows& self_shadows() const;
 
     /// The node as the cut has it.

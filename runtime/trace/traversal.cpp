@@ -202,7 +202,7 @@ Vec3 Traversal::normal_at_best() const {
     return limit_normal_in_world(model_, path_, normal, ray_(best_.t));
 }
 
-/// Of what stands for a part that is culled.
+/// Share of light at a hit that stands for a culled part.
 double Traversal::light_share_at_best() const {
     const double error_px = model_.projection.error_px();
     if (!(error_px > SelfShadows::lit_as_px)) return 1;
@@ -221,7 +221,7 @@ double Traversal::light_share_at_best() const {
     return model_.self_shadows().share(model_.layers.source[number], detail * error_px);
 }
 
-/// As descend() (detail/piece.h), several edges at once where an unrolling knows what comes of them.
+/// descend() (detail/piece.h) for one step: several edges at once where an unrolling knows their result.
 void Traversal::look_along(std::uint32_t step, WayLook& look, SurfaceHit& hit) const {
     const TraceLook& edge = model_.looks[step & ~from_cut];
     if (!edge.as_one) {

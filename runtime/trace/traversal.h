@@ -16,7 +16,7 @@
 
 namespace graftal {
 
-/// Which instructions rays are traced by. The results are the same to the last bit.
+/// Instructions by which rays are traced. The results are the same to the last bit.
 enum class Instructions { portable, avx2 };
 
 /// The fastest that this machine has.
@@ -33,7 +33,7 @@ class FlatImage {
 
     /// Where the ray is no farther from it; empty where least > most.
     RayRange within(double width) const;
-    /// How thick the image of the unit ball is yet, half: that, or up to three times as much.
+    /// Half the thickness of the image of the unit ball, or up to three times as much.
     double thickness() const { return thickness_; }
 
   private:
@@ -60,11 +60,10 @@ class Traversal final : public Surfaces {
 
     /// Nodes and primitives that rays went into so far.
     std::uint64_t visits() const { return visits_; }
-    /// What that took (RayWork, cut/work.h).
+    /// Work of these visits and of boxes (RayWork, compiler/detail/work.h).
     std::uint64_t work() const { return RayWork::part * visits_ + boxes_ + more_work_; }
-    /// Rays that went into too many parts. What they had met by then is what they meet; if that is nothing,
-    /// what they had not yet looked into is met as a whole, each part as if it were small enough to be
-    /// culled.
+    /// Rays that went into too many parts. They meet the best hit by then. Without one, a ray meets parts
+    /// that it had not yet looked into as wholes, each as if it were small enough to be culled.
     std::uint64_t given_up() const { return given_up_; }
 
   private:
@@ -79,7 +78,7 @@ class Traversal final : public Surfaces {
     template<Instructions instructions> struct EvenPacket; ///< through even models (traversal_packet_even.h)
     template<Instructions instructions> struct TurnedPacket; ///< through others (traversal_packet_turned.h)
     struct PacketRoom;                                       ///< their memory
-    struct LaterEntries; ///< what a ray is to look into later (later_entries.h)
+    struct LaterEntries;                                     ///< entries for a ray to look into later
 
     /// The ray in some frame: origin + (t - base) / unit * direction.
     struct LocalRay {
@@ -94,7 +93,7 @@ class Traversal final : public Surfaces {
         LaneMap world_from_node;
         double scale = 1;        ///< norm of world_from_node
         double flatness = 1;     ///< at most its least stretch, as a share of the largest
-        double least_detail = 0; ///< that a unit has of its entries' children, or less
+        double least_detail = 0; ///< least detail of a unit in its entries' children
         std::uint32_t edge = 0;
         std::uint32_t node = 0;
         std::uint32_t steps = 0;
@@ -102,14 +101,14 @@ class Traversal final : public Surfaces {
         bool items = false;  ///< its entries are items of a run, not edges
         bool faint = false;  ///< they stand for a set without area (least_width.h)
         bool specks = false; ///< they lead to nodes that are cut and faint
-        Vec3 margin{0.0};    ///< by which parts may reach out of their boxes
+        Vec3 margin{0.0};    ///< largest reach of parts out of their boxes
     };
 
-    /// And the ray in its frame.
+    /// A place on the way, and the ray in its frame.
     struct alignas(32) Frame : LocalRay, Place {
         float least = 0; ///< where the ray begins, in units from the base
-        /// By axis: the side of boxes where the ray goes in, the origin less the margin as that and the other
-        /// side see it, and the reciprocal of the direction.
+        /// Values by axis: the side of boxes where the ray goes in; the origin less the margin, for that
+        /// side and for the other; and the reciprocal of the direction.
         Int4 side_in;
         Float4 origin_in, origin_out, reciprocal;
     };
@@ -135,7 +134,7 @@ class Traversal final : public Surfaces {
         std::uint32_t edge = 0, node = 0, steps = 0;
         bool cut = false;
     };
-    /// And the ray in its frame. In even models, rays have one direction in all frames.
+    /// An EvenPlace and the ray in its frame. In even models, rays have one direction in all frames.
     struct alignas(64) EvenFrame : EvenPlace {
         Double4 origin;
         double base = 0, unit = 1, speed = 1;
@@ -147,7 +146,7 @@ class Traversal final : public Surfaces {
         EvenPlace place;
         std::uint32_t tree = no_tree; ///< none: it is entered as any other part
     };
-    /// What rays look into of a node with so many levels left, where nothing is culled.
+    /// The tree that rays look into for a node with `steps` levels left, where nothing is culled.
     struct EvenTree {
         std::uint32_t node = no_edge, steps = 0;
         std::uint32_t tree = no_tree;
@@ -162,12 +161,12 @@ class Traversal final : public Surfaces {
         Vec3 point{0.0};              ///< of a primitive, likewise
         double turns = 1;             ///< of a primitive (TraceEdge)
         LaneMap world_from_leaf;      ///< unless
-        bool is_upright = false;      ///< that keeps normals: it only scales evenly and moves
+        bool is_upright = false;      ///< true if it only scales evenly and moves: it keeps normals
         std::uint32_t proxy_node = 0; ///< or no_edge
         const TraceMesh::Colour* mesh_colour = nullptr; ///< of a triangle
         double cell = 0;                                ///< of its shell, in the world
         bool in_world = false; ///< the proxy was met there: so are its normal and point
-        bool crushed = false;  ///< what was crushed shows the proxies' own normals
+        bool crushed = false;  ///< a crushed part shows the proxies' own normals
     };
 
     const TraceMesh& shell_of(const Frame& frame);
@@ -175,7 +174,7 @@ class Traversal final : public Surfaces {
     struct FlatPart {
         LaneMap world_from_node;
         double scale = 1;
-        std::uint32_t edge = 0; ///< that leads to it, marked if from a cut node
+        std::uint32_t edge = 0; ///< the edge to it, marked if from a cut node
         std::uint32_t steps = 0;
         std::uint32_t depth = 0; ///< edges on the way from the frame before it
         bool faint = false;
@@ -210,7 +209,7 @@ class Traversal final : public Surfaces {
     /// far, and its way is to be kept. `ball`: of the node that it is or stands for, in the world.
     bool meet_leaf(const Primitive& primitive, const Affine& world_from_leaf, bool faint, const Ball& ball,
                    const RayRange& range);
-    /// The same for what is drawn at this place, which is regular.
+    /// Meets a primitive that is drawn at this place, which is regular.
     bool meet_drawn(const Primitive& primitive, const Affine& drawn, const RayRange& range);
     /// The edges to a frame's node.
     void keep_way(std::uint32_t frame_number);
@@ -224,7 +223,7 @@ class Traversal final : public Surfaces {
     template<bool any> bool run(const Ray& ray, const RayRange& range);
     /// Takes ray_ on from an entry of a frame that is ready; true if something nearer than best_.t was met.
     bool resume(const Entry& from, const RayRange& range);
-    /// As visits to so many parts would take it, which lanes saw are not met.
+    /// Takes patience for parts that lanes saw are not met, as visits to them would.
     void lose_patience(std::uint64_t parts) { patience_ -= std::min(patience_, parts); }
     /// False once the ray went into too many parts, and hurrying did not help.
     bool goes_on();
@@ -243,7 +242,7 @@ class Traversal final : public Surfaces {
     }
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.
     void append_to_path(std::uint32_t edge);
-    /// What a way has given to its end.
+    /// The look that a way has given to its end.
     struct WayLook {
         PathTint tint = {};
         Rgb inherited;
@@ -286,8 +285,8 @@ class Traversal final : public Surfaces {
         way_; ///< edges through the frames to the best hit, those from cut nodes marked
     std::vector<std::uint32_t> path_; ///< of the graph, likewise, once the ray is done
     std::uint64_t visits_ = 0;
-    std::uint64_t boxes_ = 0;     ///< that rays were held against (RayWork::boxes)
-    std::uint64_t more_work_ = 0; ///< than both tell
+    std::uint64_t boxes_ = 0;     ///< tests of boxes (RayWork::boxes)
+    std::uint64_t more_work_ = 0; ///< besides both
     std::uint64_t given_up_ = 0;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// How rays go through models whose parts are only scaled evenly and moved, and drawn no wider than they are:
-// the general way (traversal_kernel.h) without what such models never ask for. The ray has one direction in
-// all frames; of a frame's place a scale and an offset are left. Only traversal.cpp includes this.
+// Traversal of models whose parts are only scaled evenly and moved, and drawn no wider than they are: the
+// general way (traversal_kernel.h) without what such models never need. The ray has one direction in all
+// frames; a frame's place is a scale and an offset. Only traversal.cpp includes it.
 
 #include "compiler/primitives/passage.h"
 #include "runtime/trace/later_entries.h"
@@ -104,7 +104,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         }
     }
 
-    /// As range_in(), of a ray that is parallel to no side.
+    /// range_in() for a ray that is parallel to no side.
     GRAFTAL_INLINE RayRange range_between(const Box& box, const Double4& origin, RayRange within) const {
         const Double4 a = (lanes_of(box.min) - origin) * inverse, b = (lanes_of(box.max) - origin) * inverse;
         const Double4 enter = b < a ? b : a, leave = a < b ? b : a;
@@ -116,7 +116,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         return within;
     }
 
-    /// Of all boxes of a node.
+    /// Sides of all boxes of a node.
     static GRAFTAL_INLINE const Float8& sides_at(const BoxNode& node, std::size_t number) {
         return *(&node.side[0][0] + number);
     }
@@ -145,7 +145,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         return true;
     }
 
-    /// What any part that is entered does, for a root of which it is known what is in it.
+    /// Enters a root of which it is known what is in it, as any other part.
     GRAFTAL_INLINE bool enter_root(std::int64_t& nearest) {
         ++self.visits_;
         Frame& frame = frames[1];
@@ -250,7 +250,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         keep_leaf(part, entry.entry, parent, entry.frame, origin + hit.t * along);
     }
 
-    /// Of the best hit: the child of the edge, met at a point in its frame.
+    /// Keeps the best hit: the child of the edge, met at a point in its frame.
     GRAFTAL_INLINE void keep_leaf(const EvenPart& part, std::uint32_t edge, const Frame& parent,
                                   std::uint32_t number, const Vec3& point) {
         prefetch_look(edge);
@@ -312,7 +312,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         }
     }
 
-    /// As the primitive is met (cube.cpp).
+    /// Meets a cube by the operations of the primitive (cube.cpp).
     GRAFTAL_INLINE bool meet_cube(const Vec3& origin, const RayRange& near, PrimitiveHit& hit) const {
         Passage sides[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -338,7 +338,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         return true;
     }
 
-    /// What stands for the frame's own node.
+    /// Meets the stand-in of the frame's own node.
     GRAFTAL_INLINE void meet_proxy(const TraceNode& node, const Frame& frame, std::uint32_t number) {
         if (node.faint) {
             LaneMap world_from_proxy;

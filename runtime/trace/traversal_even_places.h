@@ -1,7 +1,7 @@
 #pragma once
 
-// Which parts of an even model rays look into, and where these lie in the world: that does not depend on the
-// rays. Only traversal.cpp and traversal_packets.cpp include this.
+// Choice of the parts of an even model that rays look into, and the parts' places in the world. Neither
+// depends on the rays. Only traversal.cpp and traversal_packets.cpp include this.
 
 #include "runtime/trace/even_parts.h"
 #include "runtime/trace/traversal_kernel.h"
@@ -18,7 +18,7 @@ struct Traversal::EvenPlaces {
         return {vec3_of(node.ball_centre * splat(frame.entry) + frame.offset), frame.scale * radius};
     }
 
-    /// As Places::is_cut().
+    /// Places::is_cut() for even models.
     GRAFTAL_INLINE bool is_cut(const TraceNode& node, const EvenPlace& frame, double least_detail) const {
         if (self.hurries_ && node.cullable) return true;
         double detail = INFINITY;
@@ -29,8 +29,8 @@ struct Traversal::EvenPlaces {
         return graftal::is_cut(node, frame.steps, detail);
     }
 
-    /// As Places::tree_of(), and what it finds. Where the node's reach is within its parent's, what is known
-    /// of that often tells.
+    /// Places::tree_of() for even models. Where the node's reach is within its parent's, the parent's detail
+    /// often decides.
     GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, EvenPlace& frame, const EvenPart& part,
                                          const EvenPlace& parent) const {
         if (part.within) {
@@ -78,7 +78,7 @@ struct Traversal::EvenPlaces {
         child.entry = parent.entry * offset[3];
     }
 
-    /// All but where it lies in the world and whether it is cut.
+    /// Sets all of the child except its place in the world and whether it is cut.
     GRAFTAL_INLINE void step_to_child(const EvenPart& part, std::uint32_t edge, const EvenPlace& parent,
                                       EvenPlace& child) const {
         child.scale = parent.scale * part.stretch;
@@ -109,8 +109,8 @@ struct Traversal::EvenPlaces {
         root.tree = tree_of(model.nodes[part.child], root.place, part, world);
     }
 
-    /// Of boxes to look into, where nothing is culled: the node and the levels left tell. no_tree: it has to
-    /// be looked at more closely.
+    /// Tree of boxes to look into, where nothing is culled: the node and the levels left decide. no_tree:
+    /// the node needs a closer look.
     GRAFTAL_INLINE std::uint32_t known_tree(const EvenPart& part, EvenPlace& frame) const {
         const std::uint32_t number = part.child;
         EvenTree& known = self.even_trees_[(7 * number + frame.steps) % self.even_trees_.size()];
@@ -128,7 +128,7 @@ struct Traversal::EvenPlaces {
         known.tree = place.cut ? node.stop_tree : tree_of(node, place, part, place);
     }
 
-    /// What will be asked of the edge to a leaf that was met, if nothing nearer is.
+    /// Fetches the look of the edge to a leaf that was met: it is needed if nothing nearer is met.
     GRAFTAL_INLINE void prefetch_look(std::uint32_t number) const {
         __builtin_prefetch(&model.looks[number]);
     }

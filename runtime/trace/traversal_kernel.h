@@ -16,7 +16,7 @@
 
 namespace graftal {
 
-/// `any`: whatever is met first will do, and only that it is.
+/// `any`: the first hit ends the search, whichever it is, and its details do not count.
 template<Instructions instructions, bool any> struct Traversal::Kernel : Places {
     LaterEntries later{self.later_};
     Traversal::Frame* frames = self.frames_.data(); ///< Traversal's
@@ -110,7 +110,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
         return frames[depth++];
     }
 
-    /// What every frame of the world has; ready_direction() is left.
+    /// Pushes the world's frame for a ray; ready_direction() is left.
     GRAFTAL_INLINE Frame& push_ray(const Ray& ray) {
         Frame& frame = push();
         frame.world_from_node = LaneMap();
@@ -373,7 +373,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
         frame.origin_out = origin - inwards;
     }
 
-    /// What counts of a ray that starts there.
+    /// Range of a ray that starts there.
     GRAFTAL_INLINE RayRange range_from(double base, double speed) const {
         return {(range.least - base) * speed, (self.best_.t - base) * speed};
     }
@@ -395,20 +395,19 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
     void meet_body(RunShape shape, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
                    const Ray& ray, const Entry& entry);
 
-    // What is met (traversal_leaves.h):
-    /// A child in whose frame the ray is `local`.
+    // Intersections (traversal_leaves.h):
     void meet_primitive(const Primitive& primitive, const Frame& parent, const LocalRay& local,
                         const Entry& entry);
     void meet_shell(const TraceMesh& mesh, std::uint32_t frame_number);
     void meet_triangle(const TraceMesh& mesh, std::uint32_t triangle, const Entry& entry);
-    /// Which of the specks in whose node's frame the ray is it may meet; `half_width`: by TraceModel::widest.
+    /// Specks of a node that the ray in its frame may meet, as bits; `half_width`: by TraceModel::widest.
     std::uint32_t specks_near(const SpeckLanes& specks, const LocalRay& ray, double half_width) const;
     bool misses_specks(const TraceNode& node, const LocalRay& ray, double half_width) const;
     void meet_specks(const TraceNode& node, std::uint32_t frame_number);
     /// A primitive of what stands for a set without area.
     void meet_faint(const TraceNode& node, const TraceEdge& edge, const Frame& parent, const Entry& entry);
     void meet_faint_proxy(const TraceNode& node, const Frame& frame);
-    /// What stands for the frame's own node.
+    /// Meets the stand-in of the frame's own node.
     void meet_proxy(const TraceNode& node, const Frame& frame);
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// How the traversal meets primitives, shells, proxies and what stands for sets without area; only
-// traversal.cpp includes it.
+// Intersections with primitives, shells, proxies and stand-ins for sets without area; only traversal.cpp
+// includes this.
 
 #include "runtime/trace/traversal_kernel.h"
 

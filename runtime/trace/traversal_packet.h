@@ -1,12 +1,11 @@
 #pragma once
 
 // Eight rays at once: neighbours of a picture mostly look into the same parts. Each ray is taken into frames
-// and meets leaves by the very operations of the way alone, in a lane of its own. What differs is the order
-// in which parts are looked into. That matters only where two hits are all but equally near: such a ray goes
-// again, alone. So a packet gives what its rays give one by one, to the last bit.
-// Here is what packets of all models share: the boxes, the stack, and rays that leave the others. How rays
-// are taken into frames say traversal_packet_even.h and traversal_packet_turned.h. Only traversal_packets.cpp
-// includes these.
+// and meets leaves by the very operations of the way alone, in a lane of its own. Only the order differs in
+// which parts are looked into. That matters only where two hits are all but equally near: such a ray goes
+// again, alone. So a packet gives what its rays give one by one, to the last bit. This file has the common
+// part of all packets: the boxes, the stack, and rays that leave the others. The ways of rays into frames
+// are in traversal_packet_even.h and traversal_packet_turned.h. Only traversal_packets.cpp includes these.
 
 #include <bit>
 #include <cstring>
@@ -30,12 +29,12 @@ struct Traversal::PacketWalk : PlacesOf {
     /// Rays on their way into an entry.
     struct Going {
         Float8 at;     ///< from where on, in units from each ray's base
-        float key = 0; ///< as Entry's
+        float key = 0; ///< Entry's key
         std::uint32_t entry, frame, mask, box;
     };
 
-    /// What becomes of rays that go into something: they are at its end, on their way into the nearest of
-    /// what is in it, or each is to go there by itself.
+    /// State of rays that went into something: they are at its end, or on their way into its nearest part,
+    /// or each is to go there by itself.
     enum class Next { end, on, alone };
 
     PacketRoom& room;
@@ -50,11 +49,11 @@ struct Traversal::PacketWalk : PlacesOf {
     GRAFTAL_INLINE PacketWalk(Traversal& traversal, std::vector<Frame>& packet_frames)
         : PlacesOf{traversal, traversal.model_, {}}, room(*traversal.packet_), frames(packet_frames) {}
 
-    /// So many rays go alone: fewer than that have little in common.
+    /// Rays that go alone: as few have little in common.
     static constexpr int few = 2;
-    /// A packet that went into so many parts is left to its rays, which may be given up.
+    /// Most visits of a packet: then it is left to its rays, which may be given up.
     static constexpr std::uint64_t most_visits = 1 << 13;
-    /// As much as the rounding of t may decide which of two hits is the nearer one, times some ten.
+    /// Difference of t within which rounding may decide which of two hits is the nearer one, times some ten.
     static constexpr double rounding = 1e-14;
 
     /// Fills in the room's hits.
@@ -127,7 +126,7 @@ struct Traversal::PacketWalk : PlacesOf {
         return going.mask != 0;
     }
 
-    /// Of rays that have met something, in the frame, as single precision tells; a little more.
+    /// Nearest hits of the rays so far, in the frame, in single precision; a little more.
     GRAFTAL_INLINE const Float8& most_in(Frame& frame) const {
         const auto hits = static_cast<std::uint32_t>(room.hits.size());
         if (frame.hits_then == hits) return frame.most;
@@ -138,7 +137,7 @@ struct Traversal::PacketWalk : PlacesOf {
         return frame.most = floats_of(most) + 2e-6f;
     }
 
-    /// Of eight boxes; as numbers, of which one is spread sooner than a lane of a vector.
+    /// A side of eight boxes, as numbers: one of these is spread faster than a lane of a vector.
     static GRAFTAL_INLINE const float* side_of(const BoxNode& node, std::size_t side, int axis) {
         return reinterpret_cast<const float*>(&node.side[side][axis]);
     }
@@ -269,7 +268,7 @@ struct Traversal::PacketWalk : PlacesOf {
         return none ? Next::end : Next::on;
     }
 
-    /// Which of eight boxes a ray of the packet may meet, as the extremes of all rays tell. Sums and products
+    /// Bits of the boxes that a ray of the packet may meet, by the extremes of all rays. Sums and products
     /// are rounded in order, so that none is left out.
     GRAFTAL_INLINE std::uint32_t boxes_near(const BoxNode& node, const Frame& frame, const Float8& most,
                                             std::uint32_t mask) const {
@@ -322,7 +321,7 @@ struct Traversal::PacketWalk : PlacesOf {
         return tree == no_tree ? Next::end : Next::on;
     }
 
-    /// Of a frame: its rays begin where they are taken into it.
+    /// Readies a frame: its rays begin where they are taken into it.
     GRAFTAL_INLINE void ready_rays(Frame& frame, const Float8 (&origin)[3], std::uint32_t mask) const {
         Double8 from;
         for (int i = 0; i < 2; ++i)
@@ -355,12 +354,12 @@ struct Traversal::PacketWalk : PlacesOf {
         const std::uint64_t visits_before = self.visits_;
         const bool met = packet().resume(going, lane, {of(least, lane), before});
         visits += self.visits_ - visits_before;
-        if (self.hurries_) { // it is not given up yet
+        if (self.hurries_) { // the ray is not given up yet
             self.hurries_ = false;
             --self.given_up_;
         }
         const std::uint32_t bit = 1u << lane;
-        if (self.met_flat_) lost |= bit; // what it meets there depends on what it met before
+        if (self.met_flat_) lost |= bit; // its flat hits depend on those before
         if (!met || self.met_flat_) return;
         if (before < INFINITY && !(self.best_.t < before - slack)) {
             tied |= bit;
@@ -393,8 +392,7 @@ struct Traversal::PacketWalk : PlacesOf {
             room.ways.push_back(frames[i].edge);
     }
 
-    // What is met (traversal_packet_leaves.h):
-    /// Four rays in a leaf's frame, and what counts of them there.
+    // Intersections (traversal_packet_leaves.h):
     struct Near {
         Double4 origin[3], along[3];
         Double4 base, unit, speed, least, most;
@@ -409,13 +407,13 @@ struct Traversal::PacketWalk : PlacesOf {
     /// `inverse`: one over what the rays go along the axes.
     static Crossing cross_cube(const Near& near, const Double4 (&inverse)[3]);
     static Crossing cross_triangle(const Near& near);
-    /// What counts of four rays that are where they start from.
+    /// Sets the range of four rays that are where they start from.
     void ready_range(Near& near, int half) const;
     /// Meets what stands for a node that is cut, in whose frame the rays are; as keep_crossings().
     bool meet_proxy(const TraceNode& node, Near (&near)[2], std::uint32_t mask);
     /// Four rays that pass the unit sphere.
     static std::uint32_t passing_sphere(const Near& near);
-    /// By each of the rays of the mask by itself.
+    /// The crossing of each ray of the mask by itself.
     Crossing cross_any(const Primitive& primitive, const Near& near, int half, std::uint32_t mask) const;
     /// Whether any ray meets what it crosses before all else. If so, the last of the room's hits, which the
     /// caller adds to, is what they have met.

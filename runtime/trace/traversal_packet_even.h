@@ -33,7 +33,7 @@ struct Traversal::EvenPacket
 
     GRAFTAL_INLINE EvenPacket(Traversal& traversal) : Walk(traversal, traversal.packet_->even_frames) {}
 
-    // As PacketWalk asks:
+    // Functions that PacketWalk asks for:
     GRAFTAL_INLINE std::size_t side_in(const Frame&, int axis) const { return sides[axis]; }
     static GRAFTAL_INLINE bool is_mixed(const Frame&, int) { return false; }
     GRAFTAL_INLINE const Float8& reciprocal_of(const Frame&, int axis) const { return reciprocal[axis]; }
@@ -138,7 +138,7 @@ struct Traversal::EvenPacket
                            frame.cut ? node.stop_tree : this->tree_of(node, frame, part, parent), going);
     }
 
-    /// What stands for the node of the frame, which is the next after that where the rays are.
+    /// Meets the stand-in of the frame's node, which is the next after that where the rays are.
     GRAFTAL_INLINE void meet_proxy(const TraceNode& node, const Frame& frame, const Going& going) {
         Near near[2];
         for (int i = 0; i < 2; ++i) {

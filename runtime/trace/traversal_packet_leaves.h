@@ -1,13 +1,13 @@
 #pragma once
 
-// How a packet of rays meets primitives, four rays at a time. Only traversal_packets.cpp includes this.
+// Intersections of a packet with primitives, four rays at a time. Only traversal_packets.cpp includes this.
 
 #include "compiler/primitives/passage.h"
 #include "runtime/trace/traversal_packet.h"
 
 namespace graftal {
 
-/// As the primitive is met (cube.cpp), by rays that are parallel to no side.
+/// Crosses a cube by the operations of the primitive (cube.cpp), with rays that are parallel to no side.
 template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
 GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::cross_cube(
     const Near& near, const Double4 (&inverse)[3]) -> Crossing {
@@ -59,7 +59,7 @@ Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::ready_range(Near
     near.most = (best.half[half] - near.base) * near.speed;
 }
 
-/// As Kernel::meet_proxy().
+/// Kernel::meet_proxy() for a packet.
 template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
 GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::meet_proxy(
     const TraceNode& node, Near (&near)[2], std::uint32_t mask) {
@@ -87,7 +87,7 @@ GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameO
     return keep_crossings(near, crossing, mask);
 }
 
-/// As it is met (sphere.cpp), up to where that is known.
+/// Meets a sphere by the operations of the primitive (sphere.cpp), until it is known which rays pass.
 template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
 GRAFTAL_INLINE std::uint32_t
 Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::passing_sphere(const Near& near) {

@@ -32,7 +32,7 @@ struct Traversal::TurnedPacket
 
     GRAFTAL_INLINE TurnedPacket(Traversal& traversal) : Walk(traversal, traversal.packet_->frames) {}
 
-    // As PacketWalk asks:
+    // Functions that PacketWalk asks for:
     static GRAFTAL_INLINE std::size_t side_in(const Frame& frame, int axis) { return frame.side_in[axis]; }
     static GRAFTAL_INLINE bool is_mixed(const Frame& frame, int axis) { return frame.mixed[axis]; }
     static GRAFTAL_INLINE const Float8& reciprocal_of(const Frame& frame, int axis) {
@@ -65,7 +65,7 @@ struct Traversal::TurnedPacket
         return model.edges[going.entry].to_primitive && !frame.faint;
     }
 
-    /// As Kernel::try_edge() of the world, by rays that are parallel to no side.
+    /// Kernel::try_edge() of the world, by rays that are parallel to no side.
     GRAFTAL_INLINE Next enter_world(Going& going) {
         Frame& frame = frames[0];
         this->spread_rays(frame.origin, frame.direction);
@@ -174,7 +174,7 @@ struct Traversal::TurnedPacket
         return this->go_in(node, frame.cut, frame.cut ? node.stop_tree : this->tree_of(node, frame), going);
     }
 
-    /// As Kernel::take_ray().
+    /// Kernel::take_ray() for four rays.
     GRAFTAL_INLINE void take_rays(const TraceEdge& edge, const Frame& parent, const Double4& at, int half,
                                   Near& near) const {
         Double4 from[3], direction[3];
@@ -232,7 +232,7 @@ struct Traversal::TurnedPacket
         }
     }
 
-    /// What stands for the node of the frame, which is the next after that where the rays were.
+    /// Meets the stand-in of the frame's node, which is the next after that where the rays were.
     GRAFTAL_INLINE void meet_proxy(const TraceNode& node, const Frame& frame, const Going& going,
                                    Near (&near)[2]) {
         if (!Walk::meet_proxy(node, near, going.mask)) return;
@@ -259,7 +259,7 @@ struct Traversal::TurnedPacket
                 crossing[i].in_world = near[i].base + crossing[i].t * near[i].unit;
                 continue;
             }
-            // What intersect() calls insane, and what is parallel to a side.
+            // Rays that intersect() calls insane, and those that are parallel to a side.
             Long4 odd = largest_of(near[i].origin[0], near[i].origin[1], near[i].origin[2]) > splat(1e11);
             if (cube) {
                 Double4 over[3];
@@ -287,7 +287,7 @@ struct Traversal::TurnedPacket
         hit.way_end = room.ways.size();
     }
 
-    /// As Kernel::meet_item().
+    /// Kernel::meet_item() for a packet.
     GRAFTAL_INLINE void meet_item(const Going& going, const Double8& at) {
         this->count(going);
         const Frame& frame = frames[going.frame];
@@ -325,7 +325,7 @@ struct Traversal::TurnedPacket
             product[axis] = a[next] * b[last] - a[last] * b[next];
         }
     }
-    /// As passes_line() and passes_point(), of an item's axis and of its ball.
+    /// passes_line() and passes_point(), for an item's axis and its ball.
     static GRAFTAL_INLINE std::uint32_t passing_line(const Vector4& direction, const Vector4& from,
                                                      const RunItem& item) {
         const Vector4 axis = {splat(item.axis.x), splat(item.axis.y), splat(item.axis.z)};
@@ -345,7 +345,7 @@ struct Traversal::TurnedPacket
                                                                dot(direction, direction));
     }
 
-    /// As Kernel::meet_body().
+    /// Kernel::meet_body() for a packet.
     GRAFTAL_INLINE void meet_body(RunShape shape, const Affine& run_from_body, const TraceRun& run,
                                   const RunItem& item, const Going& going, const Double8& at,
                                   std::uint32_t mask) {

@@ -77,7 +77,7 @@ std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange&
     return found;
 }
 
-/// Of a ray of a packet. Of those that meet the same part, one has to look along the way there.
+/// Shows the hit of a packet's ray. For rays that meet the same part, one has to look along the way there.
 void Traversal::show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceHit> hits) {
     const PacketRoom::Best& best = packet_->best[lane];
     PacketRoom::Hit& met = packet_->hits[best.hit];

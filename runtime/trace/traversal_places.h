@@ -1,7 +1,7 @@
 #pragma once
 
-// Which parts of a model rays look into, and where these lie in the world: that does not depend on the rays.
-// Only traversal.cpp and traversal_packets.cpp include this.
+// Choice of the parts of a model that rays look into, and the parts' places in the world. Neither depends on
+// the rays. Only traversal.cpp and traversal_packets.cpp include this.
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ struct Traversal::Places {
             point_through(parent.world_from_node, edge.parent_from_child.translation);
     }
 
-    /// Goes to the child of an edge; false if it is nothing. Sets all but the child's flatness.
+    /// Goes to the child of an edge; false if it is nothing. Sets all of the child except its flatness.
     GRAFTAL_INLINE bool go_to_child(const TraceEdge& edge, const TraceNode& node, std::uint32_t number,
                                     const Place& parent, Place& child) const {
         place_child(parent, edge, child.world_from_node);
@@ -61,8 +61,8 @@ struct Traversal::Places {
         return 2 * ball.radius * model.projection.detail_per_unit(ball);
     }
 
-    /// The rule of the cut (detail.h). `least_detail`: of a unit, anywhere in the node's ball; sets the
-    /// detail if it has to look.
+    /// The rule of the cut (detail/piece_kind.h). `least_detail`: of a unit, anywhere in the node's ball.
+    /// Sets the detail if it has to look.
     GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Place& frame, double least_detail,
                                double& detail) const {
         if (self.hurries_ && node.cullable) return true;
@@ -106,13 +106,13 @@ struct Traversal::Places {
         return node.tree;
     }
 
-    /// What a shell may reach out of the boxes of its parts by, in the frame.
+    /// Largest reach of a shell out of the boxes of its parts, in the frame.
     GRAFTAL_INLINE double shell_margin(const TraceNode& node, const Place& frame) const {
         return 1.5 /
                (frame.scale * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius)));
     }
 
-    /// By how much parts may reach out of their boxes, in the frame: what is too thin is drawn wider
+    /// Largest reach of parts out of their boxes, in the frame: parts that are too thin are drawn wider
     /// (least_width.h).
     GRAFTAL_INLINE Vec3 margin_of(const TraceNode& node, const Place& frame) const {
         constexpr double flat = 1e-3; // some levels below, parts may be flat enough
@@ -123,7 +123,7 @@ struct Traversal::Places {
                                                            world_ball(node, frame, 2 * node.ball_radius))
                                       : unculled * frame.scale;
         if (frame.flatness == 1) return Vec3(half_width / frame.scale);
-        // What a ball measures along the axes: the rows of the inverse, of which the columns' products are
+        // Extents of a ball along the axes: the rows of the inverse, of which the columns' products are
         // cofactors.
         const LaneMap& map = frame.world_from_node;
         const Vec3 a = vec3_of(map.column[0]), b = vec3_of(map.column[1]), c = vec3_of(map.column[2]);

@@ -1,6 +1,6 @@
 #pragma once
 
-// How the traversal meets the items of runs; only traversal.cpp includes it.
+// Intersections with the items of runs; only traversal.cpp includes this.
 
 #include "compiler/primitives/texture_space.h"
 #include "runtime/trace/run_bodies.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-// How rays go by what stands for small parts of sets without area: it is drawn wider than it is, so that a
-// ray comes near many parts and meets few. Only traversal.cpp includes this.
+// Traversal past specks, which stand for small parts of sets without area. Specks are drawn wider than they
+// are, so that a ray comes near many and meets few. Only traversal.cpp includes this.
 
 #include "runtime/trace/specks.h"
 #include "runtime/trace/traversal_kernel.h"
@@ -12,7 +12,7 @@ template<Instructions instructions, bool any>
 GRAFTAL_INLINE std::uint32_t Traversal::Kernel<instructions, any>::specks_near(const SpeckLanes& specks,
                                                                                const LocalRay& ray,
                                                                                double half_width) const {
-    // What the world's coordinates may be off by, in the frame.
+    // Error of the world's coordinates, in the frame.
     const double rounding =
         1e-9 + 1e-14 * ray.speed * (std::abs(ray.base) + largest_component(lanes_of(self.ray_.origin)));
     Double4 from_ray[3], direction[3], along[3];

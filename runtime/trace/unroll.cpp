@@ -92,7 +92,7 @@ class Unroller {
         model_.unrollings.insert(model_.unrollings.end(), unrollings.rbegin(), unrollings.rend());
     }
 
-    /// What is drawn of the parts where all that can be are cut.
+    /// Adds the drawing of the parts where all that can be are cut.
     void add_leaves(Parts& parts) {
         parts.unrolling.leaf_tree = no_tree;
         parts.unrolling.most_size = -1;
@@ -135,7 +135,7 @@ class Unroller {
         return most;
     }
 
-    /// With so many levels left all of the parts have none.
+    /// Number of levels left in the node with which all of the parts have none.
     std::uint32_t last_steps(const Parts& parts) const {
         std::uint32_t steps = Unrolling::no_steps;
         for (const std::uint32_t number : parts.edges) {
@@ -283,7 +283,7 @@ class Unroller {
         return both(box, box_of_parts(parent_from_child, child, most_looked_at));
     }
 
-    /// The boxes of turned boxes are large; those of smaller parts less so. Looks at so many at most.
+    /// Smaller than the box of a turned box, by the boxes of `most` smaller parts.
     Box box_of_parts(const Affine& place, const TraceNode& node, std::uint32_t most) const {
         const std::uint32_t count = node.edge_count + node.stop_edge_count;
         Box box;
@@ -308,7 +308,7 @@ class Unroller {
         return node.kind == TraceNode::Kind::primitive && node.primitive != PrimitiveKind::plane;
     }
 
-    /// What is in both of two boxes that meet.
+    /// The intersection of two boxes that meet.
     static Box both(const Box& a, const Box& b) {
         const Vec3 low = glm::max(a.min, b.min), high = glm::min(a.max, b.max);
         return {glm::min(low, high), glm::max(low, high)}; // rounding may turn what is flat inside out

@@ -33,7 +33,7 @@ std::string progress_text(const AnimationProgress& progress) {
     return text;
 }
 
-/// What many frames have to say is said once.
+/// Says once what many frames have to say.
 class Warnings {
   public:
     explicit Warnings(ProgressBar& bar) : bar_(bar) {}
@@ -69,7 +69,7 @@ std::string done_text(const Options& options, const AnimationOutcome& outcome) {
     return text;
 }
 
-/// What an animation that is not done leaves behind, and how to go on.
+/// A text about the frames that an animation leaves behind undone, and how to go on.
 std::string rest_text(const Options& options, const AnimationOutcome& outcome) {
     const std::size_t there = outcome.drawn + outcome.found;
     if (there == 0) return {};

@@ -10,7 +10,7 @@ namespace graftal {
 
 void add_export(CLI::App& app, Options& options);
 
-/// What is wrong with options that are each right, or "".
+/// The problem with options that are each right, or "".
 std::string complete_export(const Options& options);
 
 } // namespace graftal

@@ -41,7 +41,7 @@ int run_farm(const Options& options) {
 
 JobFolder job_folder(const Options& options) {
     std::filesystem::path path = std::filesystem::absolute(options.farm.folder).lexically_normal();
-    if (!path.has_filename()) path = path.parent_path(); // it ended in a slash
+    if (!path.has_filename()) path = path.parent_path(); // the path ended in a slash
     return JobFolder(path.string());
 }
 

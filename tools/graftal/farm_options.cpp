@@ -15,7 +15,7 @@ namespace graftal {
 
 namespace {
 
-/// Of `farm plan` itself, each with a value.
+/// Options of `farm plan` itself, each with a value.
 constexpr std::array<std::string_view, 5> plan_options = {"-o", "--output", "--tiles", "--sweep", "--result"};
 
 CLI::App& add_action(CLI::App& farm, Options& options, FarmAction action, const std::string& name,

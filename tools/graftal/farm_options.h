@@ -15,12 +15,12 @@ struct Options;
 
 enum class FarmAction { plan, submit, status, merge, clean, task };
 
-/// What `graftal farm` takes.
+/// Options of `graftal farm`.
 struct FarmOptions {
     FarmAction action = FarmAction::plan;
     std::string folder; ///< of the job
-    /// Of other programs: of `plan`, the model and options of `render` or `animate`; of `submit`, options for
-    /// sbatch.
+    /// Words for other programs: for `plan`, the model and options of `render` or `animate`; for `submit`,
+    /// options of sbatch.
     std::vector<std::string> words;
     // plan
     std::optional<ImageSize> tile;
@@ -46,7 +46,7 @@ void add_farm(CLI::App& app, Options& options);
 /// the command line, and leaves their own.
 std::vector<std::string> take_foreign_words(std::vector<std::string>& words);
 
-/// What is wrong with options that are each right, or "".
+/// The problem with options that are each right, or "".
 std::string complete_farm(const Options& options);
 
 } // namespace graftal

@@ -61,7 +61,7 @@ std::vector<std::string> whole_command(const FarmOptions& farm) {
     return words;
 }
 
-/// What is wrong with options that are right for one run, or "".
+/// The problem with options that are right for one run, or "".
 std::string refusal(const FarmOptions& farm, const Options& planned) {
     const RenderOptions& render = planned.render;
     if (std::string problem = refusal_of_tasks(planned); !problem.empty()) return problem;
@@ -224,7 +224,7 @@ class Planning {
         job_.words.insert(job_.words.end(), {"-o", folder_.result(job_)});
     }
 
-    /// Of the first task of a sweep.
+    /// Words of the first task of a sweep.
     std::vector<std::string> first_words() const {
         std::vector<std::string> words;
         const std::vector<std::string> values = values_at(job_.axes, 0);

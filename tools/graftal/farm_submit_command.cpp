@@ -34,7 +34,7 @@ int submit_here(const Options& options, const JobFolder& folder, const Job& job,
     std::size_t ended = 0, failed = 0;
     const Stopwatch watch;
     const WorkerThreads workers(*options.farm.local);
-    // Those that run at once share the processors.
+    // Tasks that run at once share the processors.
     const int threads = std::max(1, WorkerThreads(0).count() / workers.count());
     workers.for_each(missing.size(), [&](int, std::uint64_t i) {
         if (interruption.signal()) return;
@@ -94,7 +94,7 @@ class SlurmSubmission {
     }
 
   private:
-    /// What a program of Slurm prints; nothing after a complaint, if it must succeed.
+    /// The text that a program of Slurm prints; nothing after a complaint, if it must succeed.
     std::optional<std::string> ask(const std::vector<std::string>& words, bool must_succeed = true) const {
         ProcessOptions process;
         process.arguments = words;

@@ -205,7 +205,7 @@ class TaskRunner {
     std::optional<CommandSession> session_;
 };
 
-/// What the job was planned with must be what is here.
+/// Fails where this program or these files are not those that the job was planned with.
 Status check_job(const JobFolder& folder, const Job& job) {
     const std::string own = own_identity();
     if (job.program != own)

@@ -20,8 +20,8 @@
 
 namespace {
 
-/// What graftal has itself, however little POV-Ray may have: a cut for a small scene may take as much as one
-/// for a large scene.
+/// Least memory of graftal itself, however little POV-Ray may have: a cut for a small scene may take as much
+/// as one for a large scene.
 constexpr std::uint64_t least_memory_bytes = 2ull << 30;
 
 /// A file that we open must never become a standard stream that the caller has closed: such a stream is
@@ -55,7 +55,7 @@ int run_command_line(int argc, char** argv) {
     graftal::remove_pending_files();
     graftal::remove_temporary_directories();
     if (::write(STDERR_FILENO, text.data(), text.size()) < 0)
-        ::_exit(graftal::exit_environment); // it is closed
+        ::_exit(graftal::exit_environment); // standard error is closed
     ::_exit(graftal::exit_environment);
 }
 

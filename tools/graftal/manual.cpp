@@ -117,7 +117,7 @@ std::string see_also(const CommandTree& command, const CommandTree& whole) {
     return fmt::format("{}\n", fmt::join(pages, ",\n"));
 }
 
-/// What the page of graftal itself says to those who read it first.
+/// The description on the page of graftal itself, for people who read it first.
 constexpr const char* description =
     "graftal turns small text files, called models, into pictures of enormous things: fractals, plants,\n"
     "forests. The end of a model's name tells the language that it is written in:\n"

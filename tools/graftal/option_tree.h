@@ -7,7 +7,7 @@
 
 namespace graftal {
 
-/// What a shell offers for a value.
+/// Words that a shell offers for a value.
 enum class ValueKind { text, model, picture, file, folder };
 
 /// An option of a command, or an operand.
@@ -18,14 +18,14 @@ struct OptionEntry {
     std::string group; ///< the heading that it stands under, such as "Camera"
     ValueKind kind = ValueKind::text;
     std::vector<std::string> words; ///< to offer as its value; it may take others
-    bool repeats = false;           ///< it may be given more than once, or takes several values
+    bool repeats = false;           ///< true if given more than once, or with several values
 };
 
 /// A command and those below it, as pages of the manual and shells' completions need them.
 struct CommandTree {
     std::vector<std::string> path; ///< "graftal", "render"
     std::string summary;
-    std::string notes;    ///< what its help says after the options, without the examples
+    std::string notes;    ///< text of its help after the options, without the examples
     std::string examples; ///< a line each, without indentation
     std::vector<OptionEntry> options, operands;
     std::vector<CommandTree> commands;

@@ -13,11 +13,11 @@
 
 namespace graftal {
 
-// What the command line's values mean. Each returns nothing where the text is malformed or out of range.
+// Meaning of the command line's values. Each returns nothing for a text that is malformed or out of range.
 
 /// "1280x720"; each side 1..32768, at most 2^28 pixels.
 std::optional<ImageSize> parse_size(std::string_view text);
-/// The same of a picture that is drawn in parts: each side 1..131072.
+/// The size of a picture that is drawn in parts: each side 1..131072.
 std::optional<ImageSize> parse_large_size(std::string_view text);
 /// Whether parse_size() takes it.
 bool is_drawn_at_once(ImageSize size);
@@ -46,7 +46,7 @@ struct StepsValue {
 /// "7" or "7.3", from 0 to `most`.
 std::optional<StepsValue> parse_steps(std::string_view text, std::uint64_t most);
 
-/// As Magnification::parse(), and no smaller than a model may be.
+/// Magnification::parse() of values no smaller than a model may be.
 std::optional<Magnification> parse_zoom(std::string_view text);
 /// The values that parse_zoom() takes, in words.
 inline constexpr const char* zoom_values = "a number of at least 1e-100, such as 1e100 or 2^330";

@@ -263,7 +263,7 @@ void add_points(CLI::App& app, Options& options) {
 void add_collage(CLI::App& app, Options& options) {
     add_collage_options(app, options);
     add_camera(app, options);
-    app.remove_option(app.get_option("--size")); // it is the target's
+    app.remove_option(app.get_option("--size")); // the size is the target's
     add_common(app, options);
 }
 
@@ -311,7 +311,7 @@ std::string passes_text() {
     return text;
 }
 
-/// What is wrong with options beside --watch, or "".
+/// The problem with options beside --watch, or "".
 std::string refusal_to_watch(const Options& options) {
     if (options.engine && options.engine->name != native_engine.name)
         return fmt::format("--watch draws with '--engine native': leave out '--engine {}'",
@@ -323,7 +323,7 @@ std::string refusal_to_watch(const Options& options) {
     return {};
 }
 
-/// What is wrong with the size of a picture, or with the part of it that is wanted; or "".
+/// The problem with the size of a picture, or of the part of it that is wanted; or "".
 std::string refusal_of_size(const Options& options, bool in_parts) {
     const ImageSize size = options.render.compile.view.size;
     if (!options.render.tile) {
@@ -342,7 +342,7 @@ std::string refusal_of_size(const Options& options, bool in_parts) {
     return {};
 }
 
-/// What is wrong with options that are each right, or "".
+/// The problem with options that are each right, or "".
 std::string complete_command(Options& options, bool in_parts) {
     if (options.command == Command::farm) {
         options.engine = &native_engine;

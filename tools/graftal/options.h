@@ -31,7 +31,7 @@ enum class Command {
     farm
 };
 
-/// What `animate` takes besides what `render` does.
+/// Options of `animate` besides those of `render`.
 struct AnimationOptions {
     std::size_t frames = 60;
     FrameRate rate;
@@ -43,7 +43,7 @@ struct AnimationOptions {
     std::string identity; ///< the options that change what the frames show, and the version
 };
 
-/// What `points` takes besides.
+/// Options of `points` and `collage` besides.
 struct PointsSettings {
     std::optional<std::uint64_t> points;
     PointColour colour = PointColour::tint;
@@ -66,7 +66,7 @@ struct Options {
     bool time = false;
     bool quiet = false;
 
-    const Engine* engine = nullptr;  ///< as --engine names it; never null after parse_command_line()
+    const Engine* engine = nullptr;  ///< --engine; never null after parse_command_line()
     std::optional<bool> progressive; ///< of `render`: as asked for; run_render() decides
     bool watch = false;              ///< of `render`: again after each change
     std::string identifier;          ///< of `compile` to an .inc; "": as the model's file
@@ -86,8 +86,8 @@ struct ParsedCommandLine {
 
 /// Reads the command line; help goes to standard output, complaints in the GNU form to standard error.
 ParsedCommandLine parse_command_line(int argc, const char* const* argv);
-/// The same of words in place of argv. `in_parts`: the picture of `render` may be larger than what is drawn
-/// at once.
+/// Reads words in place of argv. `in_parts`: the picture of `render` may be larger than one that is drawn at
+/// once.
 ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_parts = false);
 
 } // namespace graftal

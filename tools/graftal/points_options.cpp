@@ -38,7 +38,7 @@ void add_positive(CLI::App& app, const std::string& name, const std::string& hel
     app.add_option_function<std::string>(name, set, help)->type_name("X")->take_last();
 }
 
-/// How the measure becomes colours and light.
+/// Adds the options that make colours and light of the measure.
 void add_measure(CLI::App& app, Tone& tone) {
     add_value(
         app, "--palette", "NAME|COLOURS",
@@ -59,7 +59,7 @@ void add_measure(CLI::App& app, Tone& tone) {
               });
 }
 
-/// What `--card` leaves out, and what is wrong with it, or "".
+/// Fills in what `--card` leaves out; returns what is wrong with it, or "".
 std::string complete_card(Options& options) {
     const std::filesystem::path card = options.points.card;
     if (card.extension() != ".inst") return fmt::format("--card: '{}' does not end in .inst", card.string());

@@ -8,12 +8,12 @@
 
 namespace graftal {
 
-/// What `points` takes besides the model, the camera and what all commands have.
+/// Adds the options of `points` besides the model, the camera and those that all commands have.
 void add_points_options(CLI::App& app, Options& options);
 /// Fills in what `points` was not told; returns what is wrong with options that are each right, or "".
 std::string complete_points(Options& options);
 
-/// The same of `collage`: the two files, and `--json`.
+/// Adds the options of `collage`: the two files, and `--json`.
 void add_collage_options(CLI::App& app, Options& options);
 
 } // namespace graftal

@@ -18,7 +18,7 @@ class ProgressBar {
 
     /// Names what is going on, without a measure of it.
     void show(const std::string& text);
-    /// With the time that is left, by the time that it took to come so far.
+    /// Shows a share, and the time that is left, by the time that it took to come so far.
     void show(const std::string& what, double fraction, const std::string& more = "");
     void show(const DrawProgress& progress);
     /// Takes the line away, so that other text can be printed.

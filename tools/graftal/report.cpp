@@ -57,7 +57,7 @@ int conclude_out_of_memory(const std::bad_alloc& fault) noexcept {
                           static_cast<unsigned long long>(memory_limit() >> 20));
     text[length++] = '\n';
     if (::write(STDERR_FILENO, text, static_cast<std::size_t>(length)) < 0)
-        return exit_environment; // it is closed
+        return exit_environment; // standard error is closed
     return memory_limit() > 0 ? exit_fault : exit_environment;
 }
 

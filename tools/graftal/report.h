@@ -19,14 +19,14 @@ void complain(std::string_view text);
 /// Prints the diagnostics, the failed status if there is one, and the times if they were asked for.
 void print_findings(const Options& options, const Compilation& compilation);
 
-/// The same; returns the exit status that follows. `signal`: that interrupted the command, or 0.
+/// Prints the findings; returns the exit status that follows. `signal`: that interrupted the command, or 0.
 int conclude(const Options& options, const Compilation& compilation, int signal = 0);
 
 /// Says that the memory did not suffice, and for what, without taking any; returns the exit status that
 /// follows.
 int conclude_out_of_memory(const std::bad_alloc& fault) noexcept;
 
-/// What a command asks of the stages that only tells of the model: little work, where --work does not say.
+/// Options of the stages for a command that only tells of the model: little work, where --work does not say.
 /// Colours may be left out where only shapes are told of.
 StageOptions inspecting(const Options& options, bool shapes_only = false);
 

@@ -28,30 +28,30 @@ std::optional<std::string> pass_named(const std::string& text, bool all_allowed)
 
 /// The file of the model.
 void add_model(CLI::App& app, Options& options);
-/// What every command takes that reads a model.
+/// Options of every command that reads a model.
 void add_common(CLI::App& app, Options& options);
-/// What those take that look at it from a camera.
+/// Options of commands that look at the model from a camera.
 void add_camera(CLI::App& app, Options& options);
-/// How much of the model is left out for its size.
+/// Options for the parts of the model that are left out for their size.
 void add_error(CLI::App& app, Options& options);
 /// The light of models that name none.
 void add_plain_light(CLI::App& app, Options& options);
 /// The limit of the work.
 void add_work(CLI::App& app, Options& options, const std::string& help);
-/// The same for commands that only tell of the model.
+/// The limit of the work for commands that only tell of the model.
 void add_inspecting_work(CLI::App& app, Options& options);
-/// What add_camera() adds, and how much of the model is drawn.
+/// Options of add_camera(), and those for how much of the model is drawn.
 void add_view(CLI::App& app, Options& options);
 /// `--bits`, of a PNG for people.
 CLI::Option* add_bits(CLI::App& app, Options& options);
-/// What those take that make pictures.
+/// Options of commands that make pictures.
 void add_drawing(CLI::App& app, Options& options);
 
-/// What is wrong with an output that is a folder, or "". `import` writes into a folder, and `animate` writes
+/// The problem with an output that is a folder, or "". `import` writes into a folder, and `animate` writes
 /// one; other outputs are files.
 std::string refusal_of_folder(Options& options);
 
-/// What is wrong with the name of something that the command writes, or "". Names go into files of many
+/// The problem with the name of something that the command writes, or "". Names go into files of many
 /// formats and to terminals: a line end in one would be a line of its own there.
 std::string refusal_of_names(const Options& options);
 

@@ -134,7 +134,7 @@ class Watching {
         return status.ok() ? files_.status() : status;
     }
 
-    /// Until a file has changed, a signal comes or so many milliseconds are over; -1: for ever.
+    /// Waits until a file has changed, a signal comes or `most_ms` milliseconds are over; -1: for ever.
     Status wait(int most_ms) const {
         std::array<pollfd, 2> wanted = {
             {{files_.descriptor(), POLLIN, 0}, {interruption_.flag().wake_descriptor(), POLLIN, 0}}};

@@ -59,7 +59,7 @@ double visible_cube_triangles(const CutGraph& cut, const Symmetry& symmetry, std
                 : std::exp2(static_cast<double>(sample.unit_step) / PieceKind::steps_an_octave);
         request.most_visits = most_visits;
         request.painters = {{symmetry.pair[node], Rgb(0.0)}};
-        // By the usual error of half a pixel, which is the least half width, too.
+        // Half widths by the usual error of half a pixel, which is the least half width, too.
         if (cut.nodes[node].widens && std::isfinite(request.detail_per_unit))
             request.half_widths_from_unit = Mat3(request.detail_per_unit);
         const Baked baked = bake(cut, symmetry, request, max_sample_triangles);

@@ -7,9 +7,9 @@
 
 namespace graftal {
 
-/// How many of a cube's 12 triangles stay visible, on average, where cubes are baked together: measured on a
-/// piece of some thousand cubes. 12 if the graph bakes no cubes, or none that is soon baked. `visits`: of
-/// nodes and leaves, what this has cost.
+/// Number of a cube's 12 triangles that stay visible, on average, where cubes are baked together: measured
+/// on a piece of some thousand cubes. 12 if the graph bakes no cubes, or none that is soon baked. `visits`:
+/// of nodes and leaves, the cost of this.
 double visible_cube_triangles(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t steps,
                               std::uint64_t* visits = nullptr);
 

@@ -24,11 +24,11 @@ namespace {
 constexpr double max_real_pieces = 300'000;
 constexpr std::size_t max_splits = 200'000;
 /// Each tree of a wood stands at a distance of its own. Where one node has more edges than this, details are
-/// told apart by no more than this part of an octave, lest each tree be a kind to be split by itself.
+/// told apart only by this part of an octave. Else each tree would be a kind to be split by itself.
 constexpr std::size_t many_edges = 4096;
 constexpr int coarse_steps_an_octave = 16;
 
-/// What one mesh would serve.
+/// The pieces that one mesh would serve.
 struct MeshKind {
     NodeId representative;
     std::uint32_t steps;
@@ -77,7 +77,7 @@ class Chooser {
         PieceKind kind;
         bool operator<(const Entry& other) const {
             if (weight != other.weight) return weight < other.weight;
-            // What is farthest from its end first: a kind is split once, after all that lead to it.
+            // The farthest from its end comes first: a kind is split once, after all that lead to it.
             return std::tie(kind.steps, detail_step, kind.node) <
                    std::tie(other.kind.steps, other.detail_step, other.kind.node);
         }
@@ -86,8 +86,8 @@ class Chooser {
     struct Bucket {
         double count = 0;
         std::vector<Piece> pieces;
-        std::optional<MeshKind> mesh; ///< that serves its pieces; weights may be told apart less finely later
-        double triangles = 0;         ///< that its pieces ask of the mesh
+        std::optional<MeshKind> mesh; ///< mesh of its pieces; weights may be told apart less finely later
+        double triangles = 0;         ///< triangles that its pieces ask of the mesh
     };
 
     bool fits(const Choice& choice) const { return choice.bytes <= most_bytes_; }
@@ -97,7 +97,7 @@ class Chooser {
         return fits(now) ? now.text < best.text : now.bytes < best.bytes || !std::isfinite(best.bytes);
     }
 
-    /// By the placements there are, of which there will never be fewer.
+    /// Judges by the placements there are: there will never be fewer.
     bool may_get_better(const Choice& best) const {
         const double bytes = placements_ * placement_bytes_;
         if (fits(best)) return bytes <= most_bytes_ && placements_ * placement_text_ <= best.text;
@@ -152,7 +152,7 @@ class Chooser {
         mesh.asked.erase(mesh.asked.find(triangles));
         if (!(triangles > mesh.triangles())) return; // others are as fine
         triangles_ -= triangles - mesh.triangles();
-        // What is left after subtracting far larger numbers, or infinities, is noise: summed anew.
+        // A rest after subtracting far larger numbers, or infinities, is noise: summed anew.
         if (!(triangles_ >= 1e-3 * most_triangles_)) {
             triangles_ = 0;
             for (const auto& [key, live] : live_meshes_)
@@ -220,7 +220,7 @@ class Chooser {
     double most_bytes_;
     double placement_bytes_, placement_text_;
     int grain_ = 1;     ///< kinds' details are multiples of it
-    double pieces_ = 0; ///< that were looked at
+    double pieces_ = 0; ///< pieces looked at
     double placements_ = 0;
     double triangles_ = 0;
     double most_triangles_ = 0; ///< since they were last summed

@@ -17,7 +17,7 @@ struct Choice {
     double placements = 0;
     double triangles = 0;
     double leaves = 0;
-    double pieces = 0;      ///< that were looked at: what choosing has cost
+    double pieces = 0;      ///< pieces looked at: the cost of the choice
     bool spelt_out = false; ///< nothing becomes a mesh, except for shells
 };
 
@@ -25,8 +25,7 @@ struct Choice {
 /// memory; if none does, the one that takes least. Where memory does not lack, time does: text is what both
 /// programs spend it on, and what is shortest takes at most a few times the least memory. Pieces are split
 /// heaviest first, as real pieces while there are few, then as counts; the cost of placements only grows, so
-/// the search ends where they alone cost more than the best found. The meter counts pieces; null: nobody
-/// does.
+/// the search ends where they alone cost more than the best found. The meter, if any, counts pieces.
 Choice choose_cut(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
                   const Piece& root, Weights& weights, double most_bytes, WorkMeter* meter = nullptr);
 

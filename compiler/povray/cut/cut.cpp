@@ -25,16 +25,16 @@ namespace {
 constexpr double coarser = 1.25;
 /// A cut is tried that is estimated to take this much more than there is: what is assembled is then counted.
 constexpr double estimate_slack = 1.25;
-/// Of the memory there is, what may be spent on what makes POV-Ray faster.
+/// Share of the memory that may be spent to make POV-Ray faster.
 constexpr double share_of_memory = 0.6;
 
-/// After so many pieces the control is asked: some milliseconds.
+/// Pieces after which the control is asked: some milliseconds.
 constexpr std::uint64_t pieces_a_look = 10'000;
 
-/// Of the work allowed, what graftal itself may take: the rest is for the rays.
+/// Share of the allowed work for graftal itself: the rest is for the rays.
 constexpr double share_of_work = 0.75;
 
-/// What the coarsest cut is still tried with.
+/// Share of the work with which the coarsest cut is still tried.
 constexpr double least_share_of_work = 0.01;
 
 std::string readable_count(double count) {
@@ -51,7 +51,7 @@ class Cutter {
           meter_(control, "cut", pieces_a_look) {}
 
     std::optional<Cut> run() {
-        // Of what is not to be culled nobody knows a coarser picture.
+        // Pictures that cull nothing have no coarser form.
         work_seconds_left_ =
             culls() ? share_of_work * work_after_stages(options_.work_seconds, prepared_.work_seconds)
                     : std::numeric_limits<double>::infinity();
@@ -87,7 +87,7 @@ class Cutter {
             (tried(half) ? fits : fails) = half;
         }
         if (!best) {
-            work_seconds_left_ = std::numeric_limits<double>::infinity(); // it was not too much before
+            work_seconds_left_ = std::numeric_limits<double>::infinity(); // the work was not too much before
             best = attempt(fits);
         }
         if (!best) return refuse_size();
@@ -108,11 +108,11 @@ class Cutter {
     /// next, and a step or two would not do.
     int coarser_than(int steps) const { return failed_by_work_ ? 2 * steps + 2 : std::max(1, 2 * steps); }
 
-    /// How much coarser the error is after so many steps.
+    /// Growth of the error after a number of steps.
     static double factor_after(int steps) { return std::pow(coarser, steps); }
 
-    /// The cut with an error that many steps coarser than asked for; nothing if it takes too much memory,
-    /// POV-Ray's or our own.
+    /// The cut with an error that is coarser by this number of steps than asked for. Nothing if it takes too
+    /// much memory, POV-Ray's or our own.
     std::optional<Cut> attempt(int coarser_steps) {
         try {
             return attempt_within(coarser_steps);
@@ -153,7 +153,7 @@ class Cutter {
         return assembled(root, projection, weights, memory);
     }
 
-    /// What was chosen, if it fits.
+    /// The cut by the choice, if it fits.
     std::optional<Cut> assembled(const Piece& root, const Projection& projection, Weights& weights,
                                  double memory) {
         grain_ = weights.grain();
@@ -162,7 +162,7 @@ class Cutter {
             return std::nullopt;
         };
         if (!(choice_.bytes <= estimate_slack * memory)) return failed(false);
-        // What is tried last still has half of what is left.
+        // The last try still has half of the work that is left.
         const double work_seconds = 0.5 * work_seconds_left_;
         AssemblyLimits limits{static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) +
                                   1,

@@ -23,7 +23,7 @@ std::string body_name(const Primitive& primitive) {
     return primitive.shape() ? std::string(name_of(primitive.kind())) : name_of(primitive);
 }
 
-/// What no picture shows makes no textures of its own.
+/// Grain of tints: a difference that no picture shows makes no textures of its own.
 constexpr double tint_grain = 1.0 / (1 << 24);
 
 bool share_finish(const Material& a, const Material& b) {

@@ -28,7 +28,7 @@ class Grouping {
   private:
     static constexpr std::uint32_t no_palette = UINT32_MAX;
 
-    /// Of a material, less what shades itself takes from it.
+    /// Finish of a material, with the share of light that its own shade leaves.
     struct Finish {
         std::optional<MaterialId> material;
         double light_share = 1;

@@ -30,7 +30,7 @@ using PainterKey = std::tuple<std::uint32_t, std::uint32_t, std::array<double, 3
 using RequestKey = std::tuple<NodeId, std::uint32_t, std::int32_t, std::int64_t, std::optional<PainterKey>>;
 
 /// Places whose maps differ by no more than this factor in any direction share a mesh whose parts are drawn
-/// wider than they are, so that these come out as wide to within it.
+/// wider than they are. Widths are right to within this factor.
 constexpr double most_width_ratio = 1.3;
 
 bool nearly_as_wide(const Mat3& a, const Mat3& b) {
@@ -68,7 +68,7 @@ class Placing {
     PlacedPieces take() && { return std::move(out_); }
 
   private:
-    /// Of pieces that may lie alike, in leaves; and of what is placed: it waits for memory, as leaves do not.
+    /// Work in leaves: to compare a piece with others, to widen it, and to place it, which waits for memory.
     static constexpr double work_of_comparison = 2, work_of_widening = 3, work_of_placing = 2;
 
     void visit(const Piece& piece) {
@@ -106,7 +106,7 @@ class Placing {
         walk_.drop_children_if([&](const Piece& child) { return !is_new(child); });
     }
 
-    /// Of what stands for the piece if it is cut.
+    /// Share of light of the stand-in for the piece, if it is cut.
     double light_share(const Piece& piece, double detail) const {
         if (!self_shadows_) return piece.light_share;
         return self_shadows_->share_within(piece.light_share, piece.node, detail, projection_.error_px());

@@ -14,7 +14,7 @@ struct AssemblyLimits {
     std::size_t max_triangles = 0;
     double work_seconds = 0;    ///< by WorkRates (work.h)
     double slowness = 1;        ///< slowness_of_graph()
-    WorkMeter* meter = nullptr; ///< counts pieces; null: nobody does
+    WorkMeter* meter = nullptr; ///< counts pieces; may be null
 };
 
 /// Unfolds the graph down to the pieces that become meshes, depth first. Nothing if a limit is passed on the

@@ -1,6 +1,6 @@
 #pragma once
 
-// What unfolding a cut has placed, before its meshes exist.
+// Results of unfolding a cut, before its meshes exist.
 
 #include <algorithm>
 #include <array>
@@ -43,7 +43,7 @@ struct TexturedPrimitive {
 };
 
 struct PlacedPieces {
-    PrimitiveNumbers primitives; ///< of what is placed
+    PrimitiveNumbers primitives; ///< of the placed parts
     std::deque<Placed> things;   ///< no room for twice as many while it grows
     PlacedRuns runs;
     std::vector<BakeRequest> requests;
@@ -52,7 +52,7 @@ struct PlacedPieces {
     double culled_detail = 0;
     double finest = std::numeric_limits<double>::infinity();
 
-    /// How large the details of a request look in its middle, as a share of where they are largest.
+    /// Size of a request's details in its middle, as a share of their size where they look largest.
     double seen_share(std::size_t request) const {
         if (!requests[request].shell) return 1;
         return std::min(1.0, seen_detail[request] / requests[request].detail_per_unit);

@@ -17,7 +17,7 @@ class PlacedRuns {
     struct Range {
         std::shared_ptr<const RunSource> source;
         std::size_t first = 0, count = 0;                  ///< items
-        Piece piece;                                       ///< that holds them
+        Piece piece;                                       ///< the cell of the items
         std::shared_ptr<const std::vector<bool>> left_out; ///< RunPlacements::left_out
     };
 

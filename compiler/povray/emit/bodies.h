@@ -17,7 +17,7 @@ class PovrayBodies {
     /// `prefix` begins every name.
     PovrayBodies(const Cut& cut, const std::string& prefix);
 
-    /// Of the meshes that are placed.
+    /// Number of triangles of the placed meshes.
     std::uint64_t triangle_count() const { return triangle_count_; }
     bool is_plane(std::uint32_t body) const;
 

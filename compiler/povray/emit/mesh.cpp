@@ -10,7 +10,7 @@ namespace graftal {
 
 namespace {
 
-constexpr int vertex_digits = 9; // what a float32, which POV-Ray keeps, is read back from
+constexpr int vertex_digits = 9; // enough to read back a float32, which POV-Ray keeps
 constexpr int normal_digits = 6;
 constexpr int uv_digits = 9;
 constexpr std::size_t items_per_line = 4;

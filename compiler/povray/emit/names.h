@@ -17,8 +17,8 @@ std::string identifier_part(std::string_view text);
 /// that it is none of POV-Ray's words.
 std::string model_identifier(std::string_view name);
 
-/// What `--name` may be: letters, digits and '_', a capital first, since POV-Ray's own words have none; at
-/// most 24.
+/// Whether `--name` may be this: letters, digits and '_', a capital first, since POV-Ray's own words have
+/// none; at most 24.
 bool is_model_identifier(std::string_view text);
 
 /// Hands out identifiers that begin with a prefix and differ from each other.

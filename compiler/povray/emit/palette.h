@@ -13,8 +13,7 @@ namespace graftal {
 /// larger one is a picture.
 inline constexpr std::uint32_t colour_map_colours = 128;
 
-/// How the slots of a palette are laid out in texture space. Meshes and palettes know it from the number of
-/// slots alone.
+/// Layout of a palette's slots in texture space. Meshes and palettes know it from the number of slots alone.
 class PaletteLayout {
   public:
     explicit PaletteLayout(std::uint32_t slot_count);
@@ -35,7 +34,7 @@ class PaletteLayout {
 std::string palette_pigment(const Palette& palette, const std::string& file_name,
                             const std::string& clear = {});
 
-/// The same for all colours of an image map, with a space behind it; nothing for nothing.
+/// The modifier for all colours of an image map, with a space behind it; nothing for nothing.
 std::string clear_image(const std::string& clear);
 
 /// The picture, over the palette's own colours. Requires a palette whose layout is one.

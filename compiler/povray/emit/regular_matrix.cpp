@@ -13,7 +13,7 @@ namespace graftal {
 
 namespace {
 
-/// What the shortest stretch has to be where the longest is `longest`.
+/// The least length of the shortest stretch where the longest is `longest`.
 double least_stretch(double longest) {
     return std::max(1e-9, std::min(5e-4, 0.01 * longest));
 }

@@ -33,7 +33,7 @@ struct Range {
     std::size_t begin, end;
 };
 
-/// What becomes one union: all placements of one texture and interior, whatever groups they come from.
+/// One union of the scene: all placements of one texture and interior, whatever groups they come from.
 struct Bucket {
     std::uint32_t texture;
     std::optional<Interior> interior;
@@ -252,7 +252,7 @@ bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures)
     return write_objects() && out_.flush();
 }
 
-/// How to use an include file, in comments at its beginning.
+/// Writes comments at the beginning of an include file on how to use it.
 void Emitter::write_usage(const std::vector<std::string>& materials, bool pictures) {
     constexpr std::size_t most_listed = 12;
     out_ << ", and its colours are linear light.\n// In a scene of your own, with assumed_gamma 1";
@@ -288,7 +288,7 @@ bool Emitter::write_include(std::vector<PaletteImage>& pictures) {
         texture_texts_.push_back(
             several ? fmt::format("#ifndef ({}_bare) texture {{ {} }} #end", identifier_, name)
                     : fmt::format("texture {{ {} }}", name));
-    const std::string declarations = textures_.declarations(pictures); // of what the textures are made of
+    const std::string declarations = textures_.declarations(pictures); // of the textures' parts
     write_header();
     write_usage(textures.materials, !pictures.empty());
     out_ << declarations << textures.declarations;

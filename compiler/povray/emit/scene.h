@@ -9,10 +9,9 @@
 
 namespace graftal {
 
-/// Writes the scene as POV-Ray 3.7 SDL (research: povray.md): literal placements of shared meshes, grouped by
-/// texture; the whole scaled so that it is about 1000 units large. Returns false if the sink stopped it.
-/// `palettes` receives the pictures to write beside it, all before the sink gets its first piece.
-/// Deterministic.
+/// Writes the scene as POV-Ray 3.7 SDL: literal placements of shared meshes, grouped by texture; the whole
+/// scaled so that it is about 1000 units large. Returns false if the sink stopped it. `palettes` receives
+/// the pictures to write beside it, all before the sink gets its first piece. Deterministic.
 bool emit_povray(const Cut& cut, const View& view, const PovrayOptions& options, const TextSink& sink,
                  std::vector<PaletteImage>& palettes);
 

@@ -34,7 +34,7 @@ std::string number_text(double value) {
     return text;
 }
 
-/// What scatters light.
+/// The part of a finish that scatters light.
 std::string matt_text(const Material& m) {
     std::string text = fmt::format("ambient {} diffuse {}", number_text(m.ambient), number_text(m.diffuse));
     if (m.translucency > 0) text += ", " + number_text(m.translucency);
@@ -42,7 +42,7 @@ std::string matt_text(const Material& m) {
     return text;
 }
 
-/// What shines and mirrors.
+/// The part of a finish that shines and mirrors.
 std::string shine_text(const Material& m) {
     std::string text;
     if (m.specular > 0)
@@ -60,7 +60,7 @@ std::string shine_text(const Material& m) {
     return text;
 }
 
-/// What a pigment says of light that goes through (optics.h).
+/// A pigment's words for light that goes through (optics.h).
 std::string clearness(const Material& m) {
     if (!m.is_transparent()) return {};
     const double filter = m.surface_filter();
@@ -166,7 +166,7 @@ void PovrayTextures::append_layered(std::string& text, const PlacementGroup& gro
     const std::string clear = clearness(material);
     const std::string& name = palette_name(group.palette, clear);
     if (tint.alpha <= no_tint) return append_surface(text, name, material);
-    // What more than scatters light needs the colour of both in one layer.
+    // A surface that does more than scatter light needs the colour of both in one layer.
     if (material.is_transparent() || material.has_coat() || material.metallic > 0)
         return append_surface(text, mean_text(name, tint, clear), material);
     begin_texture(text);
@@ -318,7 +318,7 @@ std::string PovrayTextures::declarations(std::vector<PaletteImage>& pictures) co
         const std::string file = file_name(picture.name);
         text += fmt::format("#declare {} = pigment {{ image_map {{ png \"{}\" {}}} }}\n", picture.name, file,
                             clear_image(key.second));
-        // With use_alpha the pattern is 1 where the picture is clear.
+        // The pattern of use_alpha is 1 where the picture is clear.
         if (picture.has_clear_parts)
             text += fmt::format("#declare {}_shape = pigment {{ image_pattern {{ png \"{}\" use_alpha }} "
                                 "color_map {{ [0 rgb 1] [1 rgb 0] }} }}\n",

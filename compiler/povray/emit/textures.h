@@ -18,21 +18,21 @@
 
 namespace graftal {
 
-/// Gathers what the groups of a cut look like: textures, and the finishes and palettes that these share.
-/// Tints are applied exactly (Hart 1992, eq. (9) and (10)): to a single colour here, over a palette by a
-/// second layer of the texture (research: povray.md, section 3).
+/// Gathers the looks of a cut's groups: textures, and the finishes and palettes that these share. Tints are
+/// applied exactly (Hart 1992, eq. (9) and (10)): to a single colour here, over a palette by a second layer
+/// of the texture.
 class PovrayTextures {
   public:
     /// `prefix` begins every name; `file_stem` the names of pictures. `by_material`: looks of different
     /// materials are different though they are equal.
     PovrayTextures(const Cut& cut, const std::string& prefix, std::string file_stem, bool by_material);
 
-    /// Of the group's primitives and meshes: an index into all(). Equal looks have equal indices.
+    /// Texture of the group's primitives and meshes: an index into all(). Equal looks have equal indices.
     std::uint32_t texture_of(const PlacementGroup& group);
     /// A texture of one colour.
     std::string plain(Rgb rgb, const Material& material);
-    /// Of the ground: a picture lies on it as texture_space.h says. `pov_from_picture` places the picture,
-    /// the unit square of x and y.
+    /// The texture of the ground: a picture lies on it as texture_space.h says. `pov_from_picture` places
+    /// the picture, the unit square of x and y.
     std::string ground(const Material& material, const Affine& pov_from_picture);
 
     /// `texture { ... }`, one or two layers.

@@ -164,7 +164,7 @@ void write_sky_picture(SdlWriter& out, const SkyLight& sky, const std::string& f
     out << "0,0,0> }\n";
 }
 
-/// As a colour that runs along a pattern of the height, from below to the zenith.
+/// Writes the sky as a colour that runs along a pattern of the height, from below to the zenith.
 void write_sky_light(SdlWriter& out, const SkyLight& sky, const std::string& file) {
     if (sky.picture) return write_sky_picture(out, sky, file);
     if (sky.clear) return write_clear_sky(out, sky);

@@ -47,7 +47,7 @@ class CheckedFile : public OIIO::Filesystem::IOProxy {
         return count;
     }
 
-    /// What went wrong, or "".
+    /// The first error's text, or "".
     std::string finish() {
         std::FILE* const file = std::exchange(file_, nullptr);
         note(file && std::fclose(file) == 0);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,7 +15,7 @@
 #include "compiler/import/fractint/ifs.h"
 #include "compiler/import/fractint/lsystem.h"
 #include "compiler/import/lparser/importer.h"
-#include "compiler/support/file.h"
+#include "compiler/support/path_text.h"
 #include "compiler/support/small_letters.h"
 #include "compiler/support/text_encoding.h"
 
@@ -25,7 +24,7 @@ namespace graftal {
 namespace {
 
 std::string ending_of(std::string_view file_name) {
-    const std::string ending = in_small_letters(std::filesystem::path(file_name).extension().string());
+    const std::string ending = in_small_letters(extension_of(file_name));
     return ending.empty() ? ending : ending.substr(1);
 }
 
@@ -103,21 +102,17 @@ ModelPath model_path(std::string_view path) {
 
 std::string model_stem(std::string_view path) {
     const ModelPath parts = model_path(path);
-    return parts.model.empty() ? std::filesystem::path(parts.file).stem().string() : plain_name(parts.model);
+    return parts.model.empty() ? std::string(stem_of(parts.file)) : plain_name(parts.model);
 }
 
 ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics, BesideOptions beside,
                          WorkMeter* meter) {
     const auto read_beside = [&sources, file,
                               beside = std::move(beside)](std::string_view name) -> std::optional<FileId> {
-        const std::filesystem::path own(sources.name(file));
-        const std::string path = (own.parent_path() / name).lexically_normal().string();
-        if (!beside.root.empty() && !lies_in(path, beside.root)) return std::nullopt;
-        std::error_code code;
-        if (!std::filesystem::exists(path, code) || is_special_file(path)) return std::nullopt;
-        if (beside.on_file) beside.on_file(path);
+        const std::string path = path_beside(sources.name(file), name);
+        if (!beside.root.empty() && !beside.files->lies_in(path, beside.root)) return std::nullopt;
         std::string text;
-        if (!read_text(path, text).ok()) return std::nullopt;
+        if (!beside.files->check(path).ok() || !beside.files->read(path, text).ok()) return std::nullopt;
         return sources.add(path, decoded_text(std::move(text), OtherBytes::windows_1252));
     };
     const ForeignFile foreign{file, sources, diagnostics, read_beside, meter};

@@ -1,6 +1,5 @@
 #include "compiler/languages/lower.h"
 
-#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include "compiler/lower/check_graph.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/support/number.h"
+#include "compiler/support/path_text.h"
 #include "compiler/support/stage_price.h"
 
 namespace graftal {
@@ -38,7 +38,7 @@ LoweredText lower_root(FileId file, const std::string& path, const LowerOptions&
             .with_hint("give a whole number");
         return {};
     }
-    lowering.loading.push_back({std::filesystem::path(path).lexically_normal().string(), Span()});
+    lowering.loading.push_back({normalised_path(path), Span()});
     LoweredText model{lower_file(file, Span{file, 0, 0}, lowering), std::move(lowering.notes)};
     if (diagnostics.has_errors() || (model.graph && !check_graph(*model.graph, diagnostics))) return {};
     if (model.graph) check_verified(*model.graph, "lower");
@@ -53,8 +53,8 @@ std::string model_language(const SourceMap& sources) {
         if (sources.original(made) == 0u) file = made;
     if (const Language* const language = language_of(file, sources, languages()))
         return std::string(language->extension);
-    const std::string extension = std::filesystem::path(sources.name(file)).extension().string();
-    return extension.empty() ? "" : extension.substr(1);
+    const std::string_view extension = extension_of(sources.name(file));
+    return std::string(extension.substr(extension.empty() ? 0 : 1));
 }
 
 LoweredText lower_text(const std::string& name, std::string text, const LowerOptions& options,
@@ -65,8 +65,7 @@ LoweredText lower_text(const std::string& name, std::string text, const LowerOpt
     std::optional<FileId> own;
     {
         WorkMeter meter(help.control, "import", 10'000);
-        own =
-            translator.own_text(file, path.model, sources, diagnostics, {options.root, help.on_file}, &meter);
+        own = translator.own_text(file, path.model, sources, diagnostics, {options.root, help.files}, &meter);
     }
     if (!own) return {};
     return lower_root(*own, name, options, sources, diagnostics, help);

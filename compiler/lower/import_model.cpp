@@ -1,8 +1,5 @@
 #include <algorithm>
 #include <charconv>
-#include <cstring>
-#include <filesystem>
-#include <system_error>
 #include <unordered_map>
 #include <utility>
 
@@ -12,7 +9,7 @@
 #include "compiler/lower/lowering.h"
 #include "compiler/primitives/mesh_file.h"
 #include "compiler/support/check.h"
-#include "compiler/support/file.h"
+#include "compiler/support/path_text.h"
 #include "compiler/support/stage_price.h"
 
 namespace graftal {
@@ -28,9 +25,8 @@ void add_chain(Diagnostic& error, const Lowering& lowering) {
         if (file->use_span.known()) error.with_note(file->use_span, "used from here");
 }
 
-std::string path_beside(Span use_span, std::string_view path, const SourceMap& sources) {
-    const std::filesystem::path user(sources.name(use_span.file));
-    return (user.parent_path() / path).lexically_normal().string();
+std::string path_named_at(Span use_span, std::string_view path, const SourceMap& sources) {
+    return path_beside(sources.name(use_span.file), path);
 }
 
 bool check_path(Span use_span, std::string_view path, Lowering& lowering) {
@@ -63,15 +59,11 @@ bool check_chain(Span use_span, const std::string& path, Lowering& lowering) {
 
 Status check_regular(const std::string& path, const Lowering& lowering) {
     const std::string& root = lowering.options.root;
-    std::error_code code;
-    // Asked first: of what lies outside nobody learns whether it is there.
-    if (!root.empty() && !lies_in(path, root))
+    const Files& files = *lowering.help.files;
+    // Asked first: of files outside nobody learns whether they are there.
+    if (!root.empty() && !files.lies_in(path, root))
         return Status::failure(fmt::format("'{}' leads out of the root folder '{}'", path, root));
-    if (lowering.help.on_file) lowering.help.on_file(path);
-    if (!std::filesystem::exists(path, code))
-        return Status::failure(fmt::format("cannot open '{}': {}", path, std::strerror(ENOENT)));
-    if (is_special_file(path)) return Status::failure(fmt::format("'{}' is not a regular file", path));
-    return {};
+    return files.check(path);
 }
 
 /// The hint for a file that is not there.
@@ -86,7 +78,7 @@ std::optional<FileId> read_file(Span use_span, const std::string& path, Lowering
     if (const auto known = lowering.files.find(path); known != lowering.files.end()) return known->second;
     std::string text;
     Status read = check_regular(path, lowering);
-    if (read.ok()) read = read_text(path, text);
+    if (read.ok()) read = lowering.help.files->read(path, text);
     if (read.ok())
         return lowering.files[path] =
                    lowering.sources.add(path, lowering.help.translator.model_text(path, std::move(text)));
@@ -105,7 +97,7 @@ std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering
     std::optional<FileId> file = read_file(use_span, parts.file, lowering);
     if (file)
         file = translator.own_text(*file, parts.model, lowering.sources, lowering.diagnostics,
-                                   {lowering.options.root, lowering.help.on_file}, &lowering.meter);
+                                   {lowering.options.root, lowering.help.files}, &lowering.meter);
     return lowering.own_texts[path] = file;
 }
 
@@ -125,7 +117,7 @@ std::shared_ptr<const Graph> lower_used(FileId file, const LoadingFile& loading,
 
 std::shared_ptr<const Graph> load(const UseStatement& use, const Environment& inner,
                                   const std::optional<PartCall>& part, Lowering& lowering) {
-    const std::string path = path_beside(use.path_span, use.path, lowering.sources);
+    const std::string path = path_named_at(use.path_span, use.path, lowering.sources);
     if (!check_chain(use.path_span, path, lowering)) return nullptr;
     const LoweredKey key{path, inner, part};
     const auto known = lowering.lowered.find(key);
@@ -230,7 +222,7 @@ bool has_room(const Graph& into, const Graph& model, Span span, Lowering& loweri
 
 std::optional<std::string> find_beside(Span name_span, std::string_view path, Lowering& lowering) {
     if (!check_path(name_span, path, lowering)) return std::nullopt;
-    std::string found = path_beside(name_span, path, lowering.sources);
+    std::string found = path_named_at(name_span, path, lowering.sources);
     const Status regular = check_regular(found, lowering);
     if (regular.ok()) return found;
     add_chain(lowering.diagnostics.error(name_span, regular.message()).with_hint(missing_hint(regular)),
@@ -246,9 +238,9 @@ std::optional<Primitive> load_mesh(Span name_span, std::string_view path, Loweri
         if (!known->second) ++lowering.known_failures;
         return known->second;
     }
-    lowering.notes.meshes[*found] = stamp_of(*found);
+    lowering.notes.meshes[*found] = lowering.help.files->stamp(*found);
     std::string bytes, fault;
-    if (const Status read = read_text(*found, bytes); !read.ok()) {
+    if (const Status read = lowering.help.files->read(*found, bytes); !read.ok()) {
         add_chain(lowering.diagnostics.error(name_span, read.message()), lowering);
         return std::nullopt;
     }
@@ -292,7 +284,7 @@ std::optional<FileId> read_model(const UseStatement& use, Lowering& lowering) {
         lowering.diagnostics.error(use.path_span, fmt::format("the model has more than {} uses", max_uses));
         return std::nullopt;
     }
-    return read_used(use.path_span, path_beside(use.path_span, use.path, lowering.sources), lowering);
+    return read_used(use.path_span, path_named_at(use.path_span, use.path, lowering.sources), lowering);
 }
 
 std::optional<ObjectId> import_model(Graph& into, const UseStatement& use, Lowering& lowering) {
@@ -315,7 +307,7 @@ std::optional<ObjectId> import_part(Graph& into, const std::unordered_map<std::s
                                     const UseStatement& use, const PartCall& part, Lowering& lowering) {
     // A model of another program has parts where its translation is in a language that has.
     const std::optional<FileId> file =
-        read_used(use.path_span, path_beside(use.path_span, use.path, lowering.sources), lowering);
+        read_used(use.path_span, path_named_at(use.path_span, use.path, lowering.sources), lowering);
     const Language* const language =
         file ? language_of(*file, lowering.sources, lowering.languages) : nullptr;
     lowering.part_missing = !language || language->extension != "inst";

@@ -1,12 +1,12 @@
 #include "compiler/lower/language.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <ranges>
 
 #include <fmt/format.h>
 
 #include "compiler/lower/lowering.h"
+#include "compiler/support/path_text.h"
 #include "compiler/syntax/lexer.h"
 
 namespace graftal {
@@ -86,7 +86,7 @@ bool looks_like_model(FileId file, const SourceMap& sources, std::span<const Lan
 const Language* language_of(FileId file, const SourceMap& sources, std::span<const Language> languages) {
     const std::string_view name = sources.name(file);
     if (name == standard_input) return &guessed_language(file, sources, languages);
-    const std::string extension = std::filesystem::path(name).extension().string();
+    const std::string_view extension = extension_of(name);
     const auto found = std::ranges::find_if(languages, [&](const Language& language) {
         return extension == fmt::format(".{}", language.extension);
     });
@@ -134,8 +134,7 @@ std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering)
         return std::nullopt;
     }
     lowering.loading.back().failures_before = lowering.failures();
-    return lowering.parsed
-        .tree(*language, file, lowering.sources, lowering.languages, lowering.diagnostics)
+    return lowering.parsed.tree(*language, file, lowering.sources, lowering.languages, lowering.diagnostics)
         .lower(lowering);
 }
 

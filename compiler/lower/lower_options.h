@@ -12,7 +12,7 @@
 #include "compiler/lower/derivation.h"
 #include "compiler/lower/translator.h"
 #include "compiler/support/control.h"
-#include "compiler/support/file.h"
+#include "compiler/support/files.h"
 #include "compiler/support/status.h"
 #include "compiler/support/texture_facts.h"
 
@@ -49,17 +49,13 @@ struct LowerOptions {
 /// Looks at the picture that a material names.
 using LookAtTexture = std::function<Status(const std::string& path, TextureFacts& facts)>;
 
-/// Hears of each file that a model names, there or not, before it is read. Not of one that leads out of the
-/// root.
-using OnFile = std::function<void(const std::string& path)>;
-
 /// Whom lowering asks on its way.
 struct LowerHelp {
-    LookAtTexture look_at_texture; ///< without this, textures are taken on trust
-    Control control;               ///< follows modules, parts and objects
-    OnFile on_file = {};
+    LookAtTexture look_at_texture;           ///< without this, textures are taken on trust
+    Control control;                         ///< follows modules, parts and objects
     LoadSkyPicture load_sky_picture = {};    ///< without this, environments are taken on trust, and are white
     Translator translator = no_translator(); ///< reads the files of other programs
+    const Files* files = &no_files();        ///< that the model may name
     ParsedFiles* parsed = nullptr;           ///< of lowerings before; null: each text is parsed anew
 };
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "compiler/support/control.h"
 #include "compiler/support/diagnostics.h"
+#include "compiler/support/files.h"
 #include "compiler/support/source.h"
 
 namespace graftal {
@@ -19,8 +19,8 @@ struct ModelPath {
 
 /// Rules for the files that lie beside a foreign one.
 struct BesideOptions {
-    std::string root{};                                ///< they must lie in this folder; "": anywhere
-    std::function<void(const std::string&)> on_file{}; ///< hears of each that is asked for
+    std::string root{}; ///< they must lie in this folder; "": anywhere
+    const Files* files = &no_files();
 };
 
 /// The compiler's door to the files of other programs. Its caller hands in the functions;

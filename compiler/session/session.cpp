@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "compiler/session/stage_clock.h"
-#include "compiler/support/file.h"
 #include "compiler/support/number.h"
 
 namespace graftal {
@@ -25,10 +24,11 @@ std::optional<unsigned> steps_left(const LowerOptions& options, bool spent) {
 
 } // namespace
 
-Session::Session(std::string path, Keep keep) : path_(std::move(path)), keep_(keep) {}
+Session::Session(std::string path, const Files& files, Keep keep)
+    : path_(std::move(path)), files_(files), keep_(keep) {}
 
 Session::Session(std::string name, std::string text, Keep keep)
-    : path_(std::move(name)), text_(std::move(text)), keep_(keep) {}
+    : path_(std::move(name)), text_(std::move(text)), files_(no_files()), keep_(keep) {}
 
 void Session::edit(std::string text) {
     text_ = std::move(text);
@@ -43,11 +43,11 @@ void Session::reload(bool textures_changed) {
         if (sources_.original(file)) continue; // a translation of another
         std::string text;
         const std::string name(sources_.name(file));
-        const Status status = read_text(name, text);
+        const Status status = files_.read(name, text);
         changed = !status.ok() || translator_.model_text(name, std::move(text)) != sources_.text(file);
     }
     for (const auto& [path, stamp] : meshes_)
-        changed = changed || stamp_of(path) != stamp;
+        changed = changed || files_.stamp(path) != stamp;
     if (changed) ++file_changes_;
 }
 
@@ -134,7 +134,7 @@ bool Session::need_source(const StageOptions& options, Compilation& compilation)
     Status status;
     ++runs_.source;
     std::optional<Source> source =
-        text_ ? Source{path_, *text_} : read_source(path_, key.root, translator_, findings, status);
+        text_ ? Source{path_, *text_} : read_source(path_, key.root, files_, translator_, findings, status);
     if (!source) { // asked again it may be there
         compilation.diagnostics = std::move(findings);
         compilation.status = std::move(status);
@@ -159,7 +159,8 @@ bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation
             ++runs_.lowered;
             std::optional<LoweredModel> model = lower_source(
                 *source_, options.lower,
-                {look_at_texture_, charging(work), on_file_, load_sky_picture_, translator_, &parsed_}, sources_, findings);
+                {look_at_texture_, charging(work), load_sky_picture_, translator_, &files_, &parsed_},
+                sources_, findings);
             const Derivation* const derivation =
                 model && model->notes.derivation ? &*model->notes.derivation : nullptr;
             key.reads_steps = reads_steps_ = !model || derivation;

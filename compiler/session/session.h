@@ -45,9 +45,10 @@ struct StageRuns {
 /// into the compilation is what a fresh run would say; `times` gets only what was run.
 class Session {
   public:
-    /// A model in a file, "-" for standard input, which is read once and when it is asked for.
-    explicit Session(std::string path, Keep keep = Keep::everything);
-    /// A model that is a text already. `name` decides the language, and where used files are looked up.
+    /// A model in a file, "-" for standard input, which is read once and when it is asked for. `files`
+    /// outlive it.
+    Session(std::string path, const Files& files, Keep keep = Keep::everything);
+    /// A model that is a text already, and uses no files. `name` decides the language.
     Session(std::string name, std::string text, Keep keep = Keep::everything);
 
     /// Long stages are ended and followed by this from now on. A stage that is cancelled gives null, and a
@@ -64,8 +65,6 @@ class Session {
 
     /// Without this, textures are taken on trust.
     void look_at_textures(LookAtTexture look) { look_at_texture_ = std::move(look); }
-    /// Hears of each file that the model names, while it is lowered.
-    void on_file(OnFile hear) { on_file_ = std::move(hear); }
     /// Without this, environments too, and they are white.
     void load_sky_pictures(LoadSkyPicture load) { load_sky_picture_ = std::move(load); }
     /// Without this, models of other programs are not read.
@@ -142,10 +141,10 @@ class Session {
 
     std::string path_;
     std::optional<std::string> text_; ///< in place of the file's
+    const Files& files_;
     std::uint64_t edits_ = 0;
     std::uint64_t file_changes_ = 0;
     LookAtTexture look_at_texture_;
-    OnFile on_file_;
     LoadSkyPicture load_sky_picture_;
     Translator translator_ = no_translator();
     PassObserver after_pass_;

@@ -16,7 +16,6 @@
 #include "compiler/session/shared_framing.h"
 #include "compiler/session/stage_clock.h"
 #include "compiler/support/check.h"
-#include "compiler/support/file.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
 #include "compiler/support/stage_price.h"
@@ -149,15 +148,15 @@ StageWork stage_work(const StageOptions& options, double spent_seconds) {
     return StageWork(limit, spent_seconds, keeps ? share_of_picture * limit : 0);
 }
 
-std::optional<Source> read_source(const std::string& path, const std::string& root,
+std::optional<Source> read_source(const std::string& path, const std::string& root, const Files& files,
                                   const Translator& translator, Diagnostics& diagnostics, Status& status) {
     const std::string file = translator.model_path(path).file;
-    if (file != "-" && !root.empty() && !lies_in(file, root)) {
+    if (file != "-" && !root.empty() && !files.lies_in(file, root)) {
         diagnostics.error(Span(), fmt::format("'{}' leads out of the root folder '{}'", file, root));
         return std::nullopt;
     }
     Source source{path, {}};
-    status = read_text(file, source.text);
+    status = files.read(file, source.text);
     if (!status.ok()) return std::nullopt;
     return source;
 }

@@ -16,7 +16,7 @@ namespace graftal {
 
 /// Reads the model's own file, which the translator finds in the path. A path that leads out of `root` is an
 /// error in `diagnostics`; a file that cannot be read gives a failed `status`.
-std::optional<Source> read_source(const std::string& path, const std::string& root,
+std::optional<Source> read_source(const std::string& path, const std::string& root, const Files& files,
                                   const Translator& translator, Diagnostics& diagnostics, Status& status);
 
 /// The seconds of counted work (support/stage_work.h) that the stages up to the analysis may take together:

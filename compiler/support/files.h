@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "compiler/support/status.h"
 
@@ -15,8 +17,8 @@ struct FileStamp {
     bool operator==(const FileStamp&) const = default;
 };
 
-/// The door to the files that a model names: the compiler opens none by itself. Paths are as the model and its
-/// caller write them, put together by path_text.h. Threads may share it.
+/// The door to the files that a model names: the compiler opens none by itself. Paths are as the model and
+/// its caller write them, put together by path_text.h. Threads may share it.
 class Files {
   public:
     virtual ~Files() = default;
@@ -30,8 +32,8 @@ class Files {
     virtual bool lies_in(const std::string& path, const std::string& folder) const = 0;
 };
 
-/// Texts in memory. Other paths are looked up in `below`, which outlives it; null: there are no others. So the
-/// texts of open editors lie over the files on a disk.
+/// Texts in memory. Other paths are looked up in `below`, which outlives it; null: there are no others. So
+/// the texts of open editors lie over the files on a disk.
 class MemoryFiles final : public Files {
   public:
     explicit MemoryFiles(const Files* below = nullptr) : below_(below) {}
@@ -54,6 +56,27 @@ class MemoryFiles final : public Files {
     const Files* below_;
     std::map<std::string, Entry> entries_; ///< by normalised path
     std::int64_t edits_ = 0;
+};
+
+/// The files of another door, and a listener that hears of each path that is looked for, there or not.
+class HeardFiles final : public Files {
+  public:
+    using Listener = std::function<void(const std::string& path)>;
+    HeardFiles(const Files& files, Listener listener) : files_(files), listener_(std::move(listener)) {}
+
+    Status check(const std::string& path) const override {
+        listener_(path);
+        return files_.check(path);
+    }
+    Status read(const std::string& path, std::string& text) const override { return files_.read(path, text); }
+    FileStamp stamp(const std::string& path) const override { return files_.stamp(path); }
+    bool lies_in(const std::string& path, const std::string& folder) const override {
+        return files_.lies_in(path, folder);
+    }
+
+  private:
+    const Files& files_;
+    Listener listener_;
 };
 
 /// Without a file.

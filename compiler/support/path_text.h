@@ -11,7 +11,8 @@ bool is_absolute_path(std::string_view path);
 
 /// The last name of a path: "tree.inst" of "models/tree.inst"; "" after a final slash.
 std::string_view file_name_of(std::string_view path);
-/// The ending of its last name with the dot, ".inst"; "" where there is none, and of names such as ".profile".
+/// The ending of its last name with the dot, ".inst"; "" where there is none, and of names such as
+/// ".profile".
 std::string_view extension_of(std::string_view path);
 /// Its last name without the ending.
 std::string_view stem_of(std::string_view path);

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "compiler/support/file.h"
 #include "compiler/support/status.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

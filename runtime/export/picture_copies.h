@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "compiler/support/file.h"
 #include "runtime/export/formats.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

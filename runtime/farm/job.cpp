@@ -11,11 +11,11 @@
 #include <unistd.h>
 
 #include "compiler/session/shared_framing.h"
-#include "compiler/support/file.h"
 #include "runtime/farm/job_json.h"
 #include "runtime/farm/join_tiles.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/render/frame_store.h"
+#include "runtime/system/file.h"
 #include "runtime/system/files_below.h"
 
 namespace graftal {

@@ -15,7 +15,7 @@ struct ModelCopy {
     std::vector<JobFile> files;
 };
 
-/// Copies the model and the files that it uses, whose paths are as Session::on_file() gives them, into the
+/// Copies the model and the files that it uses, whose paths are as HeardFiles hears them, into the
 /// folder. Nothing else is done to it: whether the copy works, its first compilation shows.
 Status copy_model(const std::string& model, const std::vector<std::string>& used, const std::string& folder,
                   ModelCopy& copy);

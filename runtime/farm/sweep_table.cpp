@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "compiler/support/file.h"
 #include "runtime/farm/job_json.h"
 #include "runtime/farm/task_records.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "compiler/support/file.h"
 #include "runtime/image_files/png_chunks.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

@@ -14,12 +14,12 @@
 #include <fmt/format.h>
 
 #include "compiler/support/check.h"
-#include "compiler/support/file.h"
 #include "compiler/support/small_letters.h"
 #include "runtime/image_files/animation.h"
 #include "runtime/image_files/exr_files.h"
 #include "runtime/image_files/picture_files.h"
 #include "runtime/image_files/png_files.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/support/file.h"
 #include "compiler/support/status.h"
 #include "compiler/support/tint.h"
 #include "runtime/image/image.h"
 #include "runtime/image_files/row_sink.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "compiler/light/sky_picture.h"
-#include "compiler/support/file.h"
 #include "compiler/support/status.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

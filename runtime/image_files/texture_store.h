@@ -7,10 +7,10 @@
 #include <string>
 
 #include "compiler/light/sky_picture.h"
-#include "compiler/support/file.h"
 #include "compiler/support/status.h"
 #include "compiler/support/texture_facts.h"
 #include "runtime/image/texture.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

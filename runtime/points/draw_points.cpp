@@ -13,7 +13,6 @@
 #include "compiler/chaos/unroll.h"
 #include "compiler/session/frame_model.h"
 #include "compiler/support/check.h"
-#include "compiler/support/file.h"
 #include "runtime/image/develop.h"
 #include "runtime/points/accumulation.h"
 #include "runtime/points/card.h"
@@ -23,6 +22,7 @@
 #include "runtime/points/point_source.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

@@ -6,12 +6,12 @@
 #include <span>
 #include <string>
 
-#include "compiler/support/file.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/points/ply_file.h"
 #include "runtime/points/point_source.h"
 #include "runtime/points/tone.h"
 #include "runtime/render/picture_session.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

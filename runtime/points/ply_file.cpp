@@ -12,8 +12,8 @@
 
 #include <fmt/format.h>
 
-#include "compiler/support/file.h"
 #include "compiler/support/printable.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "compiler/support/file.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "compiler/support/file.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/image_files/png_chunks.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 

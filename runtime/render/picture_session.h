@@ -3,13 +3,16 @@
 #include "compiler/import/importers.h"
 #include "compiler/session/session.h"
 #include "runtime/image_files/texture_store.h"
+#include "runtime/system/disk_files.h"
 
 namespace graftal {
 
 /// A session for pictures: it reads models of other programs, and the textures that a model names.
 class PictureSession : public Session {
   public:
-    explicit PictureSession(std::string path, Keep keep = Keep::everything) : Session(std::move(path), keep) {
+    /// `files` outlive it; textures are read from the disk in any case.
+    explicit PictureSession(std::string path, Keep keep = Keep::everything, const Files& files = disk_files())
+        : Session(std::move(path), files, keep) {
         translate_with(importing_translator());
         look_at_textures(
             [this](const std::string& name, TextureFacts& facts) { return textures_.look_at(name, facts); });

@@ -13,10 +13,10 @@
 #include <unistd.h>
 
 #include "compiler/povray/emit/scene.h"
-#include "compiler/support/file.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/image_files/sky_file.h"
 #include "runtime/image_files/texture_store.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

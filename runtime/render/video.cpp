@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/support/file.h"
+#include "runtime/system/file.h"
 #include "runtime/system/process.h"
 
 namespace graftal {

@@ -14,8 +14,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "compiler/support/file.h"
-#include "compiler/support/signal_registry.h"
+#include "runtime/system/file.h"
+#include "runtime/system/signal_registry.h"
 
 namespace graftal {
 

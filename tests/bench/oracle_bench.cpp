@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "runtime/system/disk_files.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
 #include "tests/image/oracle.h"
@@ -173,7 +174,7 @@ void ask(const Request& request, const std::string& view, const CameraSetting& c
 
 bool cut_into_meshes(const std::string& path, const StageOptions& options) {
     Compilation ignored;
-    Session session(path);
+    Session session(path, disk_files());
     const auto compiled = compile_scene(session, options, ignored);
     return compiled && compiled->cut.triangle_count > 0;
 }

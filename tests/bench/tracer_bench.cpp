@@ -21,6 +21,7 @@
 #include "compiler/session/session.h"
 #include "compiler/session/stages.h"
 #include "compiler/support/counter_random.h"
+#include "runtime/system/disk_files.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
 #include "tests/bench/embree_rays.h"
@@ -49,7 +50,7 @@ std::unique_ptr<TraceModel> load(const std::string& path, const std::string& ste
     options.detail.error_px = error_px;
     if (steps != "-") options.lower.steps = static_cast<unsigned>(std::stoul(steps));
     Compilation compilation;
-    Session session(path);
+    Session session(path, disk_files());
     const auto viewed = session.viewed(options, compilation);
     const auto prepared = viewed ? session.prepared(options, compilation) : nullptr;
     if (!prepared) {

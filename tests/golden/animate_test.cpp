@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "compiler/support/file.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/image_files/png_chunks.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 namespace {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/session/session.h"
-#include "compiler/support/file.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 namespace {

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/languages/lower.h"
-#include "compiler/support/file.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 namespace {

@@ -19,8 +19,8 @@
 #include <gtest/gtest.h>
 
 #include "compiler/languages/lower.h"
-#include "compiler/support/file.h"
 #include "compiler/support/printable.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "compiler/support/file.h"
+#include "runtime/system/file.h"
 #include "tests/golden/command_line.h"
 
 namespace graftal {

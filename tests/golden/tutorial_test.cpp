@@ -9,7 +9,7 @@
 
 #include <gmock/gmock.h>
 
-#include "compiler/support/file.h"
+#include "runtime/system/file.h"
 #include "tests/golden/command_line.h"
 
 namespace graftal {

@@ -4,9 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
 #include "runtime/povray/povray.h"
 #include "runtime/render/scene_files.h"
+#include "runtime/system/disk_files.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {
@@ -17,7 +18,7 @@ std::optional<CompiledModel> compile_path(const std::string& path, const StageOp
                                           const CutOptions& cut) {
     Compilation compilation;
     const auto model = [&] {
-        Session session(path);
+        Session session(path, disk_files());
         return compile_scene(session, options, compilation, cut);
     }();
     EXPECT_TRUE(model) << compilation.diagnostics.render(compilation.sources) << compilation.status.message();

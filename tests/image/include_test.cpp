@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
+#include "runtime/system/file.h"
 #include "tests/image/drawing.h"
 
 namespace graftal {

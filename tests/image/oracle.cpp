@@ -12,10 +12,11 @@
 #include "compiler/povray/emit/scene.h"
 #include "compiler/povray/emit/view.h"
 #include "compiler/session/stages.h"
-#include "compiler/support/file.h"
 #include "runtime/povray/povray.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/render/scene_files.h"
+#include "runtime/system/disk_files.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
@@ -354,7 +355,7 @@ class Comparison {
 } // namespace
 
 DetailedModel look_at_file(const std::string& path, const StageOptions& options, Compilation& compilation) {
-    DetailedModel model{Session(path).viewed(options, compilation), {}};
+    DetailedModel model{Session(path, disk_files()).viewed(options, compilation), {}};
     if (model.viewed) model.detail = resolved(options.detail, *model.viewed);
     return model;
 }

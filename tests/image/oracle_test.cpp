@@ -9,7 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
+#include "runtime/system/disk_files.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 #include "tests/image/oracle.h"
 #include "tests/image/random_model.h"
@@ -242,7 +243,7 @@ TEST(OracleItself, CanSayNo) {
     const DetailedModel ours = look_at_file(path, stopped_after(2), compilation);
     const DetailedModel coarser = look_at_file(path, stopped_after(1), compilation);
     ASSERT_TRUE(ours.viewed && coarser.viewed);
-    Session session(path);
+    Session session(path, disk_files());
     const auto compiled = compile_scene(session, stopped_after(2), compilation, {.flatten = true});
     ASSERT_TRUE(compiled);
     CompiledModel theirs = *compiled;

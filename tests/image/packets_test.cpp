@@ -12,6 +12,7 @@
 
 #include "compiler/session/session.h"
 #include "compiler/session/stages.h"
+#include "runtime/system/disk_files.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"
 
@@ -28,7 +29,7 @@ std::unique_ptr<TraceModel> load(const std::string& path) {
     options.view.size = size;
     options.detail.error_px = 1;
     Compilation compilation;
-    Session session(std::string(GRAFTAL_SOURCE_DIR "/") + path);
+    Session session(std::string(GRAFTAL_SOURCE_DIR "/") + path, disk_files());
     const auto viewed = session.viewed(options, compilation);
     const auto prepared = viewed ? session.prepared(options, compilation) : nullptr;
     if (!prepared) return nullptr;

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

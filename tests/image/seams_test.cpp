@@ -15,7 +15,8 @@
 
 #include "compiler/session/session.h"
 #include "compiler/support/counter_random.h"
-#include "compiler/support/file.h"
+#include "runtime/system/disk_files.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 #include "runtime/trace/traversal.h"
 
@@ -119,7 +120,7 @@ std::unique_ptr<TraceModel> load(const Covered& covered, const std::string& plac
     StageOptions options;
     options.view.light = DefaultLight::plain;
     Compilation compilation;
-    Session session(path);
+    Session session(path, disk_files());
     const auto viewed = session.viewed(options, compilation);
     const auto prepared = viewed ? session.prepared(options, compilation) : nullptr;
     if (!prepared) return nullptr;

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
 #include "runtime/render/native_engine.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 #include "tests/image/drawing.h"
 #include "tests/image/render_helpers.h"

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/povray/cut/compile.h"
+#include "runtime/system/disk_files.h"
 #include "tests/property/nearest.h"
 
 namespace graftal {
@@ -103,7 +104,7 @@ TEST_P(ChaosGame, PointsAndGeometryAreCloseBothWays) {
     options.view.size = {320, 240};
     options.detail.error_px = 8;
     Compilation compilation;
-    Session session(std::string(GRAFTAL_SOURCE_DIR) + "/" + GetParam());
+    Session session(std::string(GRAFTAL_SOURCE_DIR) + "/" + GetParam(), disk_files());
     const std::shared_ptr<const CompiledModel> compiled = compile_scene(session, options, compilation);
     ASSERT_TRUE(compiled) << compilation.diagnostics.render(compilation.sources);
     const std::vector<Vec3> points = chaos_points(*compiled->model);

@@ -11,7 +11,8 @@
 #include <unistd.h>
 
 #include "compiler/session/stages.h"
-#include "compiler/support/file.h"
+#include "runtime/system/disk_files.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 namespace {
@@ -35,10 +36,10 @@ class Compile : public ::testing::Test {
 
     std::shared_ptr<const AnalysedModel> analyse(const std::string& text, bool for_report = false) {
         EXPECT_TRUE(write_text("model.inst", text).ok());
-        return Session("model.inst").analysed(options_, compilation_, for_report);
+        return Session("model.inst", disk_files()).analysed(options_, compilation_, for_report);
     }
     std::shared_ptr<const CompiledModel> compile(Compilation& compilation) {
-        Session session("model.inst");
+        Session session("model.inst", disk_files());
         return compile_scene(session, options_, compilation);
     }
     std::string messages() const { return compilation_.diagnostics.render(compilation_.sources); }
@@ -137,7 +138,7 @@ TEST_F(Compile, AnUnknownPassIsReportedWithTheKnownOnes) {
 }
 
 TEST_F(Compile, AFileThatCannotBeReadIsTheEnvironmentsFault) {
-    EXPECT_FALSE(Session("none.inst").analysed(options_, compilation_));
+    EXPECT_FALSE(Session("none.inst", disk_files()).analysed(options_, compilation_));
     EXPECT_FALSE(compilation_.diagnostics.has_errors());
     EXPECT_EQ(compilation_.status.message(), "cannot open 'none.inst': No such file or directory");
 }

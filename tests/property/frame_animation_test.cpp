@@ -12,6 +12,7 @@
 #include "compiler/scene/outline.h"
 #include "compiler/session/session.h"
 #include "compiler/session/stages.h"
+#include "runtime/system/disk_files.h"
 
 namespace graftal {
 namespace {
@@ -26,7 +27,7 @@ struct Shown {
 
 Shown analysed(const std::string& scene, const StageOptions& options = {}) {
     Compilation compilation;
-    Session session(std::string(GRAFTAL_SOURCE_DIR "/scenes/") + scene);
+    Session session(std::string(GRAFTAL_SOURCE_DIR "/scenes/") + scene, disk_files());
     const auto model = session.analysed(options, compilation);
     EXPECT_TRUE(model) << scene << "\n" << compilation.diagnostics.render(compilation.sources);
     return {model, levels_of(*model, options.lower.steps)};

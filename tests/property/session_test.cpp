@@ -15,7 +15,8 @@
 #include "compiler/session/shared_framing.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
-#include "compiler/support/file.h"
+#include "runtime/system/disk_files.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 #include "runtime/trace/picture_tracer.h"
 #include "tests/property/random_graph.h"
@@ -304,7 +305,7 @@ TEST(Session, ReloadingSeesWhatHasChanged) {
         EXPECT_TRUE(write_text(path, text).ok());
     };
     written(model, "use b = \"b.inst\"\nobject a { instance: b }\n");
-    Session session(model);
+    Session session(model, disk_files());
     const auto most_x = [&] {
         Compilation compilation;
         const auto analysed = session.analysed({}, compilation);

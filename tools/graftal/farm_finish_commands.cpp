@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "compiler/support/file.h"
 #include "runtime/farm/contact_sheet.h"
 #include "runtime/farm/job_status.h"
 #include "runtime/farm/join_tiles.h"
@@ -10,6 +9,7 @@
 #include "runtime/farm/task_records.h"
 #include "runtime/render/frame_store.h"
 #include "runtime/render/stopwatch.h"
+#include "runtime/system/file.h"
 #include "runtime/system/interruption.h"
 #include "runtime/system/process_memory.h"
 #include "tools/graftal/commands.h"

@@ -9,7 +9,6 @@
 
 #include "compiler/import/importers.h"
 #include "compiler/session/shared_framing.h"
-#include "compiler/support/file.h"
 #include "compiler/support/printable.h"
 #include "runtime/farm/join_tiles.h"
 #include "runtime/farm/model_copy.h"
@@ -17,6 +16,8 @@
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/render/scene_files.h"
+#include "runtime/system/disk_files.h"
+#include "runtime/system/file.h"
 #include "runtime/system/interruption.h"
 #include "runtime/system/made_folders.h"
 #include "runtime/system/process_memory.h"
@@ -198,9 +199,11 @@ class Planning {
         const std::string& model = asked.operands.front();
         std::vector<std::string> used;
         Compilation compilation;
-        CommandSession session(asked, model);
+        const HeardFiles files(disk_files(), [&](const std::string& path) {
+            if (disk_files().check(path).ok()) used.push_back(path);
+        });
+        CommandSession session(asked, model, Keep::nothing, files);
         session.set_control({cancel_, {}});
-        session.on_file([&](const std::string& path) { used.push_back(path); });
         StageOptions stages = asked.render.compile;
         if (!session.lowered(stages, compilation)) return conclude(asked, compilation);
         ModelCopy copy;

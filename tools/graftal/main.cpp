@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "compiler/support/check.h"
-#include "compiler/support/file.h"
 #include "runtime/image_files/image_files.h"
+#include "runtime/system/file.h"
 #include "runtime/system/memory_limit.h"
 #include "runtime/system/signal_stack.h"
 #include "runtime/system/temporary_directory.h"

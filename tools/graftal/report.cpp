@@ -8,8 +8,8 @@
 
 #include "compiler/graph/print.h"
 #include "compiler/support/check.h"
-#include "compiler/support/file.h"
 #include "compiler/support/printable.h"
+#include "runtime/system/file.h"
 #include "runtime/system/memory_limit.h"
 #include "tools/graftal/commands.h"
 
@@ -76,8 +76,8 @@ int print_output(std::string_view text) {
     return exit_environment;
 }
 
-CommandSession::CommandSession(const Options& options, const std::string& path, Keep keep)
-    : PictureSession(path, keep) {
+CommandSession::CommandSession(const Options& options, const std::string& path, Keep keep, const Files& files)
+    : PictureSession(path, keep, files) {
     if (options.dump_after.empty()) return;
     after_each_pass([wanted = options.dump_after](const Pass& pass, const Graph& graph) {
         if (wanted == "all" || wanted == pass.name)

@@ -36,7 +36,8 @@ int print_output(std::string_view text);
 /// The session of a command, with `--dump-after` connected.
 class CommandSession : public PictureSession {
   public:
-    CommandSession(const Options& options, const std::string& path, Keep keep = Keep::nothing);
+    CommandSession(const Options& options, const std::string& path, Keep keep = Keep::nothing,
+                   const Files& files = disk_files());
 };
 
 } // namespace graftal

@@ -14,6 +14,7 @@
 
 #include "compiler/import/importers.h"
 #include "runtime/render/scene_files.h"
+#include "runtime/system/disk_files.h"
 #include "runtime/system/file_watch.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
@@ -46,11 +47,11 @@ class Watching {
   public:
     explicit Watching(const Options& options)
         : options_(options), render_(options.render), bar_(!options.quiet),
-          session_(options, options.operands.front(), Keep::everything) {
+          watched_(disk_files(), [this](const std::string& path) { watch(path); }),
+          session_(options, options.operands.front(), Keep::everything, watched_) {
         const CancelFlag interrupted = interruption_.flag();
         session_.set_control(
             {CancelFlag([this, interrupted] { return interrupted.raised() || files_.changed(); }), {}});
-        session_.on_file([this](const std::string& path) { watch(path); });
         render_.progressive = options.progressive.value_or(true);
         render_.on_progress = [this](const DrawProgress& progress) { bar_.show(progress); };
     }
@@ -151,6 +152,7 @@ class Watching {
     ProgressBar bar_;
     const Interruption interruption_;
     FileWatch files_;
+    const HeardFiles watched_; ///< the model's files
     CommandSession session_;
     std::set<std::string> changed_; ///< since the last line
     bool settled_ = false;          ///< the last picture is that of the model as the session knows it

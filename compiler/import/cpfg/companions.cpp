@@ -1,11 +1,11 @@
 #include "compiler/import/cpfg/companions.h"
 
-#include <filesystem>
 #include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "compiler/import/foreign_text.h"
+#include "compiler/support/path_text.h"
 
 namespace graftal {
 
@@ -19,7 +19,7 @@ bool ends_in(std::string_view word, std::string_view ending) {
 
 CpfgCompanions find_cpfg_companions(const ForeignFile& file) {
     CpfgCompanions found;
-    const std::filesystem::path own(file.sources.name(file.file));
+    const std::string_view own = file.sources.name(file.file);
     if (const auto specifications = file.read_beside("specifications")) {
         const std::string_view text = file.sources.text(*specifications);
         for (const TextLine& line : lines_of(text, 0, text.size())) {
@@ -29,7 +29,7 @@ CpfgCompanions find_cpfg_companions(const ForeignFile& file) {
                 command.push_back(word);
             bool names_own = false;
             for (const std::string& word : command)
-                names_own = names_own || word == own.filename().string();
+                names_own = names_own || word == file_name_of(own);
             if (command.empty() || !command[0].starts_with("cpfg") || !names_own) continue;
             for (std::size_t i = 1; i < command.size(); ++i) {
                 if (command[i - 1] == "-e") found.environment = command[i];
@@ -40,7 +40,7 @@ CpfgCompanions find_cpfg_companions(const ForeignFile& file) {
         }
     }
     for (const char* ending : {".v", ".view"}) {
-        const std::string name = own.stem().string() + ending;
+        const std::string name = std::string(stem_of(own)) + ending;
         if (found.view.empty() && file.read_beside(name)) found.view = name;
     }
     return found;

@@ -1,7 +1,6 @@
 #include "compiler/import/cpfg/importer.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 #include "compiler/import/cpfg/companions.h"
@@ -11,13 +10,14 @@
 #include "compiler/import/cpfg/view.h"
 #include "compiler/import/cpfg/write/writer.h"
 #include "compiler/import/foreign_text.h"
+#include "compiler/support/path_text.h"
 
 namespace graftal {
 
 namespace {
 
 std::vector<ForeignModel> cpfg_models(const ForeignFile& file) {
-    const std::string name = std::filesystem::path(file.sources.name(file.file)).stem().string();
+    const std::string name(stem_of(file.sources.name(file.file)));
     return {{name, file.span(0, std::min<std::size_t>(file.text().find('\n'), file.text().size()))}};
 }
 

@@ -4,13 +4,13 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
 #include "compiler/support/number.h"
+#include "compiler/support/path_text.h"
 
 namespace graftal {
 
@@ -88,7 +88,7 @@ Surface read_surface(const ForeignFile& file) {
 }
 
 std::vector<ForeignModel> surface_models(const ForeignFile& file) {
-    const std::string name = std::filesystem::path(file.sources.name(file.file)).stem().string();
+    const std::string name(stem_of(file.sources.name(file.file)));
     return {{name, file.span(0, std::min(file.text().find('\n'), file.text().size()))}};
 }
 

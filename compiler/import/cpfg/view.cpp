@@ -4,13 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
+#include "compiler/support/path_text.h"
 
 namespace graftal {
 
@@ -168,7 +168,7 @@ class ViewReader {
 
     void read_curve(const std::string& name) {
         const std::optional<FileId> file = file_.read_beside(name);
-        CpfgViewCurve curve{plain_name(std::filesystem::path(name).stem().string()), {}};
+        CpfgViewCurve curve{plain_name(stem_of(name)), {}};
         if (file)
             if (auto known = read_cpfg_curve(file_.sources.text(*file))) curve.curve = std::move(*known);
         if (view_.curves.size() < most_functions) view_.curves.push_back(std::move(curve));
@@ -179,7 +179,7 @@ class ViewReader {
         const std::optional<FileId> file = file_.read_beside(name);
         if (!file) return;
         std::istringstream text{std::string(file_.sources.text(*file))};
-        CpfgFunction function{std::filesystem::path(name).stem().string(), {}};
+        CpfgFunction function{std::string(stem_of(name)), {}};
         std::vector<CurvePoint> points;
         std::size_t expected = 0;
         for (std::string line; std::getline(text, line);) {

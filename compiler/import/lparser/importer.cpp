@@ -1,12 +1,12 @@
 #include "compiler/import/lparser/importer.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/lparser/system.h"
+#include "compiler/support/path_text.h"
 
 namespace graftal {
 
@@ -16,7 +16,7 @@ constexpr std::size_t most_file_bytes =
     1'000'000; ///< of a file: its strings have fewer modules than ours may
 
 std::vector<ForeignModel> lparser_models(const ForeignFile& file) {
-    const std::string name = std::filesystem::path(file.sources.name(file.file)).stem().string();
+    const std::string name(stem_of(file.sources.name(file.file)));
     return {{name, file.span(0, std::min<std::size_t>(file.text().find('\n'), file.text().size()))}};
 }
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "compiler/chaos/unroll.h"
-#include "compiler/support/file.h"
+#include "runtime/system/file.h"
 #include "tests/unit/chaos/games.h"
 #include "tests/unit/languages/lower_file.h"
 

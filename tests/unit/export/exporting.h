@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
 #include "runtime/export/export_model.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

@@ -5,11 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
 #include "runtime/farm/job_status.h"
 #include "runtime/farm/model_copy.h"
 #include "runtime/farm/slurm.h"
 #include "runtime/farm/task_records.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
 #include "runtime/farm/contact_sheet.h"
 #include "runtime/farm/join_tiles.h"
 #include "runtime/image_files/small_text.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

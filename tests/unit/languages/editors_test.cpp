@@ -11,10 +11,10 @@
 #include "compiler/graph/primitive.h"
 #include "compiler/inst/parse/repeat.h"
 #include "compiler/languages/languages.h"
-#include "compiler/support/file.h"
 #include "compiler/syntax/expression_functions.h"
 #include "compiler/syntax/scene_statements.h"
 #include "compiler/syntax/transform.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 namespace {

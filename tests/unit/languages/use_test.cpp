@@ -11,6 +11,7 @@
 #include "compiler/graph/print.h"
 #include "compiler/import/importers.h"
 #include "compiler/languages/lower.h"
+#include "runtime/system/disk_files.h"
 #include "tests/unit/languages/lower_file.h"
 
 namespace graftal {
@@ -30,8 +31,9 @@ class Use : public ::testing::Test {
     void lower(const std::string& name, const LowerOptions& options = {}) {
         sources_ = SourceMap();
         diagnostics_ = Diagnostics();
-        const LowerHelp help{.translator = translator_};
-        graph_ = test::lower_file((folder_ / name).string(), options, sources_, diagnostics_, status_, help).graph;
+        const LowerHelp help{.translator = translator_, .files = &disk_files()};
+        graph_ =
+            test::lower_file((folder_ / name).string(), options, sources_, diagnostics_, status_, help).graph;
     }
     std::string errors() const { return diagnostics_.render(sources_); }
     const Object& object(std::string_view name) const {
@@ -263,9 +265,10 @@ TEST_F(Use, files_are_told_before_they_are_read_there_or_not) {
     write("a.inst", "use leaf = \"parts/leaf.inst\" use none = \"none.inst\" use far = \"../far.inst\"\n"
                     "object a { union: leaf, none, far  instance: mesh \"a.obj\" }");
     std::vector<std::string> told;
-    const LowerHelp help{.on_file = [&](const std::string& path) {
+    const HeardFiles files(disk_files(), [&](const std::string& path) {
         told.push_back(std::filesystem::path(path).lexically_relative(folder_).string());
-    }};
+    });
+    const LowerHelp help{.files = &files};
     test::lower_file((folder_ / "a.inst").string(), {.root = folder_.string()}, sources_, diagnostics_,
                      status_, help);
     EXPECT_THAT(told, ::testing::IsSupersetOf({"parts/leaf.inst", "none.inst"})) << errors();

@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/points/distance_transform.h"
 #include "runtime/points/draw_points.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
 #include "runtime/points/glow.h"
 #include "runtime/points/point_projection.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 #include "runtime/trace/camera_rays.h"
 

@@ -7,10 +7,10 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
-#include "compiler/support/file.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/image_files/png_chunks.h"
 #include "runtime/render/frame_store.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

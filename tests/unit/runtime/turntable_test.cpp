@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/support/file.h"
 #include "runtime/render/animate.h"
+#include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {

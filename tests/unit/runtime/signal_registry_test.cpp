@@ -1,4 +1,4 @@
-#include "compiler/support/signal_registry.h"
+#include "runtime/system/signal_registry.h"
 
 #include <array>
 #include <csignal>

@@ -1,4 +1,4 @@
-#include "compiler/support/file.h"
+#include "runtime/system/file.h"
 
 #include <csignal>
 #include <filesystem>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "compiler/support/files.h"
 #include "compiler/support/status.h"
 
 namespace graftal {
@@ -69,13 +69,7 @@ void remove_pending_files() noexcept;
 /// another has it, or nothing can be locked there.
 int lock_path(const std::string& path);
 
-/// The stamp that tells whether a file was written since; zeros where there is no file.
-struct FileStamp {
-    std::int64_t time = 0;
-    std::uint64_t bytes = 0;
-    bool operator==(const FileStamp&) const = default;
-};
-
+/// The stamp of a file; zeros where there is none.
 FileStamp stamp_of(const std::string& path);
 
 /// Writes `text` to a PendingFile, and does not commit it.

@@ -1,4 +1,4 @@
-#include "compiler/support/file.h"
+#include "runtime/system/file.h"
 
 #include <algorithm>
 #include <atomic>
@@ -15,7 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "compiler/support/signal_registry.h"
+#include "runtime/system/signal_registry.h"
 
 namespace graftal {
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "runtime/image_files/image_files.h"
 #include "runtime/system/disk_files.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/traversal.h"

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "runtime/image_files/image_files.h"
 #include "tests/golden/command_line.h"
 
 namespace graftal {

@@ -54,8 +54,8 @@ struct Lowering {
     Diagnostics& diagnostics;
     const LowerOptions& options;
     const LowerHelp& help;
-    WorkMeter& meter;                      ///< of modules, parts and objects
-    std::span<const Language> languages;   ///< that models may be written in
+    WorkMeter& meter;                    ///< of modules, parts and objects
+    std::span<const Language> languages; ///< that models may be written in
     ParsedFiles& parsed;
     std::vector<LoadingFile> loading = {}; ///< from the root model to the file being lowered
     /// Models already lowered; null after errors. A model used twice is read and reported once.

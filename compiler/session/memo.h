@@ -26,8 +26,8 @@ template<typename Key, typename Value> class Memo {
         return key_ == key && (value_ || failed_ || !wanted);
     }
 
-    /// Runs the stage: make(key, findings) gives the value, or nothing if the stage fails, and may take out of the
-    /// key what it has not read. `findings`: of the stages before.
+    /// Runs the stage: make(key, findings) gives the value, or nothing if the stage fails, and may take out
+    /// of the key what it has not read. `findings`: of the stages before.
     template<typename Make> void run(Key key, Diagnostics findings, const Make& make) {
         if (!(key_ == key)) ++serial_;
         key_.reset();

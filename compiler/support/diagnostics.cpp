@@ -98,7 +98,8 @@ void Diagnostics::add(const Diagnostics& others) {
         warning_count_ += other.severity == Severity::warning ? 1 : 0;
         add(other.severity, other.span, other.message) = other;
     }
-    if (others.error_count_ > max_errors) error_count_ += others.error_count_ - max_errors; // counted, not kept
+    if (others.error_count_ > max_errors)
+        error_count_ += others.error_count_ - max_errors; // counted, not kept
 }
 
 void Diagnostics::drop_repeated_remarks(std::size_t since) {

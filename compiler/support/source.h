@@ -33,8 +33,8 @@ struct Position {
     std::uint32_t column = 1;
 };
 
-/// The texts that a compilation has read. A copy shares them: texts, and views of them, live as long as any map
-/// that holds them.
+/// The texts that a compilation has read. A copy shares them: texts, and views of them, live as long as any
+/// map that holds them.
 class SourceMap {
   public:
     /// Adds a text under the name that diagnostics print. Requires text.size() < 2^32 - 1.

@@ -16,7 +16,8 @@ class Workers {
 
     /// Calls work(worker, number) once for each number below `count`; they are handed out from 0 on. Workers
     /// have numbers from 0 to count() - 1, each a thread of its own. After an exception no more numbers are
-    /// handed out, and it is thrown again when all have stopped. Returns the number of threads that took part.
+    /// handed out, and it is thrown again when all have stopped. Returns the number of threads that took
+    /// part.
     virtual int for_each(std::uint64_t count,
                          const std::function<void(int worker, std::uint64_t number)>& work) const = 0;
 };

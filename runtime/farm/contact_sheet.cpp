@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "runtime/image_files/small_text.h"
 #include "runtime/image/texture.h"
+#include "runtime/image_files/small_text.h"
 #include "runtime/trace/picture_tracer.h"
 
 namespace graftal {

@@ -307,7 +307,7 @@ std::string cut_text(const Cut& cut) {
 
 std::optional<PovrayReport> render_by_povray(PictureSession& session, const RenderOptions& options,
                                              Compilation& compilation) {
-    std::shared_ptr<const CompiledModel> model = 
+    std::shared_ptr<const CompiledModel> model =
         compile_scene(session, options.compile, compilation, options.cut);
     if (!model) return std::nullopt;
     TemporaryDirectory temporary;

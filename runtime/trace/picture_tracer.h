@@ -38,9 +38,10 @@ Tile common(const Tile& a, const Tile& b);
 /// Fineness of the look at a picture: blocks of pixels that show what their middle does, or samples within
 /// each pixel, on a lattice or at random.
 struct Sampling {
-    int block = 1;                ///< pixels along each side of a block
-    std::optional<int> antialias; ///< with blocks of 1: POV-Ray's samples by +A0.0 +AM2 +R<depth> -J, else one
-    int most_samples = 0;         ///< with blocks of 1: samples through a filter, in place of a lattice
+    int block = 1; ///< pixels along each side of a block
+    std::optional<int>
+        antialias;        ///< with blocks of 1: POV-Ray's samples by +A0.0 +AM2 +R<depth> -J, else one
+    int most_samples = 0; ///< with blocks of 1: samples through a filter, in place of a lattice
     double noise_255 = 0; ///< fewer, where the error of a pixel is below this, in 255ths as it is shown
 
     /// Rays through a pixel, those that neighbours share counted once.

@@ -33,7 +33,8 @@ class BadModel : public ::testing::TestWithParam<std::string> {};
 TEST_P(BadModel, is_explained) {
     std::filesystem::current_path(folder); // so that messages name the file and not the machine
     Compilation compilation;
-    const std::shared_ptr<const AnalysedModel> model = Session(GetParam(), disk_files()).analysed({}, compilation);
+    const std::shared_ptr<const AnalysedModel> model =
+        Session(GetParam(), disk_files()).analysed({}, compilation);
     EXPECT_TRUE(compilation.status.ok()) << compilation.status.message();
     EXPECT_FALSE(model);
     EXPECT_TRUE(compilation.diagnostics.has_errors());

@@ -408,7 +408,8 @@ TEST_P(NativeLight, IsPovrays) {
     const LitScene& scene = GetParam();
     StageOptions options = whole(scene.size);
     options.view.light = DefaultLight::studio;
-    const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options, {.flatten = true});
+    const std::optional<CompiledModel> model =
+        compile_text("lit.inst", scene.text, options, {.flatten = true});
     ASSERT_TRUE(model);
     const NativePicture native = shade(*model, {povray_sample_of_pixel});
     const Image povray = draw(*model, SampleFormat::linear16);
@@ -470,7 +471,8 @@ TEST(NativeLightSamples, ArePovraysOfAnAntialiasedPixel) {
     const LitScene& scene = scenes[1];
     StageOptions options = whole(scene.size);
     options.view.light = DefaultLight::studio;
-    const std::optional<CompiledModel> model = compile_text("lit.inst", scene.text, options, {.flatten = true});
+    const std::optional<CompiledModel> model =
+        compile_text("lit.inst", scene.text, options, {.flatten = true});
     ASSERT_TRUE(model);
     for (const int depth : {1, 2, 3}) {
         SCOPED_TRACE(depth);

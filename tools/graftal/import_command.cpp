@@ -8,6 +8,7 @@
 #include "compiler/support/control.h"
 #include "compiler/support/printable.h"
 #include "compiler/support/stage_work.h"
+#include "runtime/system/disk_files.h"
 #include "runtime/system/file.h"
 #include "runtime/system/made_folders.h"
 #include "tools/graftal/commands.h"
@@ -63,7 +64,7 @@ class Importing {
         if (!found_.status.ok()) return exit_environment;
         const FileId file = found_.sources.add(path_.file, model_text(path_.file, std::move(text)));
         const ForeignFile foreign =
-            foreign_file(file, found_.sources, found_.diagnostics, {root, {}}, &meter);
+            foreign_file(file, found_.sources, found_.diagnostics, {root, &disk_files()}, &meter);
         const Importer* const importer = importer_of(foreign);
         if (!importer) return exit_fault;
         if (path_.model.empty() && output_.ends_with('/')) return import_all(*importer, foreign);

@@ -6,8 +6,8 @@
 
 #include "compiler/session/stage_options.h"
 #include "runtime/export/formats.h"
-#include "runtime/image_files/animation.h"
 #include "runtime/image/image.h"
+#include "runtime/image_files/animation.h"
 #include "runtime/points/tone.h"
 #include "runtime/render/render.h"
 #include "runtime/render/sweep.h"

@@ -67,7 +67,7 @@ int run_render(const Options& options) {
 int run_compile(const Options& options) {
     Compilation compilation;
     CommandSession session(options, options.operands.front());
-    const std::shared_ptr<const CompiledModel> model = 
+    const std::shared_ptr<const CompiledModel> model =
         compile_scene(session, options.render.compile, compilation, options.render.cut);
     const Interruption interruption;
     if (model) {

@@ -16,8 +16,8 @@ struct CompiledModel {
     Cut cut;
 };
 
-/// Cuts the session's model for POV-Ray. Null after errors in the compilation, or with its failed status. A session
-/// that keeps nothing gives up what it has prepared.
+/// Cuts the session's model for POV-Ray. Null after errors in the compilation, or with its failed status. A
+/// session that keeps nothing gives up what it has prepared.
 std::shared_ptr<const CompiledModel> compile_scene(Session& session, const StageOptions& options,
                                                    Compilation& compilation,
                                                    const CutOptions& cut_options = {});

@@ -11,6 +11,7 @@
 #include "compiler/graph/unfold.h"
 #include "compiler/import/importers.h"
 #include "compiler/languages/lower.h"
+#include "runtime/system/disk_files.h"
 
 namespace graftal::testing {
 
@@ -18,8 +19,8 @@ namespace graftal::testing {
 struct Imported {
     Imported(const std::string& name, const std::string& text, LowerOptions options = {}) {
         options.may_draw_nothing = true;
-        LoweredText lowered =
-            lower_text(name, text, options, sources, diagnostics, {.translator = importing_translator()});
+        LoweredText lowered = lower_text(name, text, options, sources, diagnostics,
+                                         {.translator = importing_translator(), .files = &disk_files()});
         graph = std::move(lowered.graph);
         derivation = std::move(lowered.notes.derivation);
         for (FileId file = 0; file < sources.size(); ++file)

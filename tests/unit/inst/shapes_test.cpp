@@ -12,6 +12,7 @@
 #include "compiler/graph/print.h"
 #include "compiler/graph/verify.h"
 #include "compiler/languages/lower.h"
+#include "runtime/system/disk_files.h"
 
 namespace graftal {
 namespace {
@@ -44,7 +45,8 @@ struct Lowered {
 
     explicit Lowered(const std::string& text, const std::string& folder = ".",
                      const LowerOptions& options = {}) {
-        graph = lower_text(folder + "/m.inst", text, options, sources, diagnostics).graph;
+        graph = lower_text(folder + "/m.inst", text, options, sources, diagnostics, {.files = &disk_files()})
+                    .graph;
     }
     std::string errors() const { return diagnostics.render(sources); }
 };

@@ -1,11 +1,8 @@
 // Lowering asks the cancel flag wherever it may take long, and leaves nothing behind.
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "compiler/languages/lower.h"
 
@@ -75,28 +72,24 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// Members of a family are imported one after the other.
 TEST(ImportIsCancelled, BetweenMembers) {
-    const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / ("graftal_cancel_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder);
     std::string part;
     for (int i = 0; i < 200; ++i)
         part += "object o" + std::to_string(i) + " { sphere translate: k, " + std::to_string(i) + ", 0 }\n";
     part += "object all {\n";
     for (int i = 0; i < 200; ++i)
         part += "  instance: o" + std::to_string(i) + "\n";
-    std::ofstream(folder / "part.inst") << "inner k = 0 members 256\n" << part << "}\n";
+    MemoryFiles files;
+    files.set("part.inst", "inner k = 0 members 256\n" + part + "}\n");
     std::string text = "use part = \"part.inst\"\nobject m {\n";
     for (int i = 0; i < 100; ++i)
         text += "  instance: part(" + std::to_string(i) + "/100)\n";
     std::uint64_t asked = 0;
-    const LowerHelp help{{}, {CancelFlag([&] { return ++asked > 4; }), {}}};
+    const LowerHelp help{.control = {CancelFlag([&] { return ++asked > 4; }), {}}, .files = &files};
     SourceMap sources;
     Diagnostics diagnostics;
-    EXPECT_THROW(lower_text((folder / "m.inst").string(), text + "}\n", {}, sources, diagnostics, help),
-                 Cancelled)
+    EXPECT_THROW(lower_text("m.inst", text + "}\n", {}, sources, diagnostics, help), Cancelled)
         << diagnostics.render(sources);
     EXPECT_EQ(asked, 5u);
-    std::filesystem::remove_all(folder);
 }
 
 } // namespace

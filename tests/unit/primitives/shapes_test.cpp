@@ -247,7 +247,9 @@ TEST(MeshFile, RefusesDamagedObj) {
     EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 2e6\n"), HasSubstr("line 2: a coordinate is 2000000"));
     EXPECT_THAT(fault_of_mesh("v 0 0 0\nvt 1 inf\n"), HasSubstr("line 2: texture: a coordinate is inf"));
     EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), HasSubstr("no triangle"));
-    EXPECT_THAT(fault_of_mesh(""), HasSubstr("no triangle"));
+    EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\n"), HasSubstr("it holds no face"));
+    for (const char* const strange : {"", "lsys tree { axiom F }\n", "{\"asset\": 1}"})
+        EXPECT_THAT(fault_of_mesh(strange), HasSubstr("it holds no vertex")) << strange;
 }
 
 constexpr const char* ply_header = "ply\nformat {} 1.0\ncomment none\nelement vertex 3\nproperty float x\n"

@@ -24,7 +24,7 @@ const fs::path project = GRAFTAL_SOURCE_DIR;
 
 /// The table of graftal_layer() calls. A layer stands below all that it uses, so one read is enough.
 Layers layers_of_project() {
-    static const std::regex call(R"(^graftal_layer\((\S+)\s*(?:USES ([a-z/ ]+))?)");
+    static const std::regex call(R"(^graftal_layer\((\S+)\s*(?:USES ([a-z_/ ]+))?)");
     Layers layers;
     std::ifstream lists(project / "CMakeLists.txt");
     for (std::string line; std::getline(lists, line);) {
@@ -83,6 +83,7 @@ TEST(Layers, IncludesGoDownTheListOnly) {
     int sources = 0;
     visit_sources({"compiler", "runtime"}, [&](const fs::path& file, const std::string& text) {
         ++sources;
+        if (file.parent_path() == "runtime/python") return; // a program on top of all layers
         for (const std::string& fault : faulty_includes(file.parent_path(), text, layers))
             ADD_FAILURE() << file.string() << ": " << fault;
     });

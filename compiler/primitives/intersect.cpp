@@ -2,8 +2,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/primitives/primitive.h"
-
 namespace graftal {
 namespace {
 

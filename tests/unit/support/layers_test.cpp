@@ -20,13 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 using Layers = std::map<std::string, std::set<std::string>>; // folder -> folders that it may include
 
-const fs::path root = GRAFTAL_SOURCE_DIR;
+const fs::path project = GRAFTAL_SOURCE_DIR;
 
 /// The table of graftal_layer() calls. A layer stands below all that it uses, so one read is enough.
 Layers layers_of_project() {
-    static const std::regex call(R"(^graftal_layer\((\S+)\s*(?:USES ([a-z/ ]+))?)");
+    static const std::regex call(R"(^graftal_layer\((\S+)\s*(?:USES ([a-z_/ ]+))?)");
     Layers layers;
-    std::ifstream lists(root / "CMakeLists.txt");
+    std::ifstream lists(project / "CMakeLists.txt");
     for (std::string line; std::getline(lists, line);) {
         std::smatch match;
         if (!std::regex_search(line, match, call)) continue;
@@ -51,8 +51,8 @@ std::string layer_of(fs::path folder, const Layers& layers) {
 /// Calls `visit(file, text)` for each source in the folders of a list, and in the folders within them.
 template<typename Visit> void visit_sources(const std::vector<std::string>& folders, const Visit& visit) {
     for (const std::string& folder : folders)
-        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
-            const fs::path file = entry.path().lexically_relative(root);
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(project / folder)) {
+            const fs::path file = entry.path().lexically_relative(project);
             if (!entry.is_regular_file() || (file.extension() != ".cpp" && file.extension() != ".h"))
                 continue;
             std::ifstream text(entry.path());
@@ -83,6 +83,7 @@ TEST(Layers, IncludesGoDownTheListOnly) {
     int sources = 0;
     visit_sources({"compiler", "runtime"}, [&](const fs::path& file, const std::string& text) {
         ++sources;
+        if (file.parent_path() == "runtime/python") return; // a program on top of all layers
         for (const std::string& fault : faulty_includes(file.parent_path(), text, layers))
             ADD_FAILURE() << file.string() << ": " << fault;
     });

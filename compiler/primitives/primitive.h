@@ -138,7 +138,7 @@ struct PrimitiveTraits {
 
     /// intersect() of a ray that is sane (intersect.h).
     bool (*intersect)(const Primitive&, const Ray&, const RayRange&, PrimitiveHit&);
-    /// The same within so many steps, where a ray may take many; else null.
+    /// intersect() within `most_steps`, where a ray may take many; else null.
     bool (*intersect_within)(const Primitive&, const Ray&, const RayRange&, PrimitiveHit&,
                              std::uint64_t most_steps) = nullptr;
 };

@@ -50,8 +50,8 @@ double shared_area(double a, double b, double distance) {
     return segment(large, to_large) + segment(small, to_small);
 }
 
-/// Each query is a ball of the radius that it tells. From each direction it hears of its disc the share that
-/// others leave free: one that covers a share of it takes so much away, except for its transmittance.
+/// A ball for each query, of the radius that it tells. The query hears, for each direction, the share of its
+/// disc that others leave free. A ball that covers a share takes that away, except for its transmittance.
 class Shade : public GrowthEnvironment {
   public:
     Shade(const EnvironmentSettings& settings, Diagnostics& diagnostics)

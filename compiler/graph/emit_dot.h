@@ -7,8 +7,8 @@
 
 namespace graftal {
 
-/// The graph in Graphviz's DOT: one node an object (primitives as boxes, the root doubled), one edge a pair
-/// of objects with the number of instances between them, objects of one cycle in a cluster. Deterministic.
+/// The graph in Graphviz's DOT. A node is an object (primitives as boxes, the root doubled), an edge a pair
+/// of objects with the number of instances between them, a cluster a cycle. Deterministic.
 std::string emit_dot(const Graph& graph, const Components& components);
 
 } // namespace graftal

@@ -17,7 +17,7 @@
 //   3. else a proxy: an ellipsoid that covers as much of a picture as the object does.
 //
 // An object whose terminal has a size (`terminal_px`) is drawn as its terminal wherever it measures at most
-// so many pixels across: a card or a few triangles in place of a leaf's recursion. What is nearer is
+// so many pixels across: a card or a few triangles in place of a leaf's recursion. Nearer objects are
 // unfolded.
 //
 // An instance may state its levels in place of that count. A zoom's new root does, whose pieces have used up
@@ -57,7 +57,7 @@ struct Instance {
     Tint tint;
     std::optional<MaterialId> material; ///< nothing: as the parent says
     Span span;
-    std::uint32_t levels = levels_of_master; ///< that it takes, where it states them ("Levels")
+    std::uint32_t levels = levels_of_master; ///< its levels, where it states them ("Levels")
     /// The instance's share of the object's random points (chaos/chances.h), relative to the other
     /// instances; 0: not stated, or none beside others that are. Pictures of surfaces do not depend on it.
     double chance = 0;
@@ -69,8 +69,8 @@ struct Object {
     std::vector<Instance> instances;    ///< the union, in the order of the text
     std::optional<Instance> terminal;   ///< drawn in place of the object where recursion is cut; its
                                         ///< master must be ending
-    /// In place of instances: a union of round primitives, too many to be instances (run.h). Means what
-    /// instances of them would, in this order; graphs share it, for nobody changes it.
+    /// A union of round primitives in place of instances, too many to be instances (run.h). Means what
+    /// instances would, in this order; graphs share it, for nobody changes it.
     std::shared_ptr<const Run> run;
     std::vector<std::optional<MaterialId>> run_materials; ///< by the colours of the run
     double terminal_px = 0; ///< size on screen from which down the terminal is drawn; 0: that of

@@ -29,9 +29,9 @@ struct Material {
     /// colours what goes through it.
     double absorption = 0;
     double blur = 0; ///< how rough mirrors and glass are: the alpha of Trowbridge and Reitz (facets.h)
-    /// The picture that is wrapped round each primitive in place of rgb (texture_space.h), by the file it is
-    /// read from or the model it is drawn from; empty: none. Where its alpha is below 1/2 there is no
-    /// surface.
+    /// The picture that is wrapped round each primitive in place of rgb (texture_space.h). It is named by
+    /// the file it is read from or the model it is drawn from; empty: none. Where its alpha is below 1/2
+    /// there is no surface.
     std::string texture;
     double around = 1;   ///< how often it goes round what is round
     double coverage = 1; ///< share of the picture that is not clear
@@ -48,8 +48,8 @@ struct Material {
     bool is_veil() const { return is_transparent() && filter == 0 && !has_coat(); }
     /// Whether what it mirrors, or shows behind itself, is blurred.
     bool is_blurred() const { return blur > 0 && (reflection > 0 || is_transparent()); }
-    /// Whether it has a clear coat, which reflects more the more a ray grazes it. What the coat reflects
-    /// is not there for what is below it.
+    /// Whether it has a clear coat, which reflects more the more a ray grazes it. Light that the coat
+    /// reflects does not reach what is below it.
     bool has_coat() const { return ior > 1; }
 };
 

@@ -30,7 +30,7 @@ struct PathState {
     Affine world_from_object;
     PathTint tint;                      ///< of the whole path, parent in front
     std::optional<MaterialId> material; ///< the one nearest to the end
-    std::uint32_t levels = 0;           ///< that the path has used up
+    std::uint32_t levels = 0;           ///< levels used up by the path
 };
 
 /// One instance further.

@@ -1,7 +1,7 @@
 #pragma once
 
-// Runs: what an honest derivation draws, where nothing repeats. Millions of single round parts lie side by
-// side, each in 64 bytes, where an instance takes three times as much and a master of its own.
+// Runs: the parts that an honest derivation draws, where nothing repeats. Millions of single round parts lie
+// side by side, each in 64 bytes. An instance takes three times as much and a master of its own.
 
 #include <cstddef>
 #include <cstdint>
@@ -58,8 +58,8 @@ struct RunItem {
     Vec3 base{0.0}; ///< of a sphere the centre
     Vec3 axis{0.0}; ///< from the base to the far end; of a sphere as long as the radius
     double radius = 0;
-    /// About the axis, in units of 2^-32 of a full turn, from where across() is. Only pictures on a surface
-    /// show it; it is rounded to 7e-10 of the radius.
+    /// The turn about the axis, in units of 2^-32 of a full turn, from where across() is. Only pictures on a
+    /// surface show it; it is rounded to 7e-10 of the radius.
     std::uint32_t turn = 0;
     RunShape shape;
     bool ball = false;        ///< another part: a sphere of this radius at the far end

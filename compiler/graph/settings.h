@@ -25,7 +25,7 @@ struct CameraSetting {
     std::optional<double> width;    ///< orthographic: width of the view in scene units
     std::optional<double> height;   ///< with a width: the view shows this height too, and is wider if it must
     std::optional<double> aperture; ///< radius of the lens; 0 or nothing: all is sharp
-    std::optional<Vec3> focus;      ///< what is sharp, as everything at its depth; nothing: look_at
+    std::optional<Vec3> focus;      ///< a sharp point, as all at its depth; nothing: look_at
     bool operator==(const CameraSetting&) const = default;
 };
 
@@ -37,7 +37,7 @@ struct LightSetting {
     double angle_deg = 0;         ///< apparent diameter of a sun
     double width = 0, height = 0; ///< of a lamp that is a rectangle
     double radius = 0;            ///< of a lamp that is a disc
-    std::optional<Vec3> look_at;  ///< what such a lamp faces
+    std::optional<Vec3> look_at;  ///< point that a disc faces
     bool operator==(const LightSetting&) const = default;
 };
 
@@ -47,7 +47,7 @@ struct SkySetting {
     Rgb below{0.2, 0.19, 0.17};
     std::optional<double> turbidity;           ///< a clear sky, about the first sun among the lights
     std::string environment;                   ///< the file of a picture (SkyPicture); empty: none
-    std::shared_ptr<const SkyPicture> picture; ///< what it holds; null: nobody has read it, and it is white
+    std::shared_ptr<const SkyPicture> picture; ///< its picture; null: nobody has read it, and it is white
     std::optional<double> clouds;              ///< the share of the sky that they cover (light/clouds.h)
     double turn_deg = 0;   ///< of picture or clouds about y; 90 brings its middle from x to -z
     double brightness = 1; ///< of all of it
@@ -68,7 +68,7 @@ struct GroundSetting {
     double height = 0;                   ///< the plane y = height
     std::optional<std::string> material; ///< by name; else a neutral one
     std::optional<Rgb> rgb;
-    std::optional<FlatArea> area; ///< what `scatter` covers with `over: ground`; the plane goes on
+    std::optional<FlatArea> area; ///< area of `scatter` with `over: ground`; the plane goes on
     bool operator==(const GroundSetting&) const = default;
 };
 

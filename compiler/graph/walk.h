@@ -1,7 +1,7 @@
 #pragma once
 
-// The one walk over what unfolds: who walks says what a state is and what lies below it, and this says which
-// comes next and when it ends.
+// The one walk over all that unfolds. The caller says what a state is and what lies below it; the walk says
+// which comes next and when it ends.
 
 #include <algorithm>
 #include <cstddef>

@@ -38,7 +38,7 @@ std::string plain_name(std::string_view name);
 std::string block_name(std::string_view name);
 
 /// The number that a text begins with, and how many characters it has with the blanks before it; none: no
-/// number. As strtod() reads it where the decimal point is a point, whatever the locale is.
+/// number. Reads as strtod() does where the decimal point is a point, whatever the locale is.
 struct LeadingNumber {
     double value = 0;
     std::size_t length = 0;

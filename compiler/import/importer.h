@@ -53,8 +53,8 @@ struct Translation {
     std::string text;
     std::vector<Span> origins; ///< of each line of the text; unknown where the importer wrote it by itself
 
-    /// Adds a line, which may be empty. A line end in it becomes a blank, so that no name and no remark of a
-    /// foreign file can begin a line of its own.
+    /// Adds a line, which may be empty. A line end in it becomes a blank: no name and no remark of a foreign
+    /// file can begin a line of its own.
     void line(std::string_view words, Span origin = {}) {
         for (const char c : words)
             text += c == '\n' || c == '\r' ? ' ' : c;
@@ -71,7 +71,7 @@ struct Importer {
     /// Whether a text is most likely of this format, and of no other; in a time linear in the text.
     bool (*recognises)(std::string_view text);
     std::string_view sign; ///< by which people know a text of the format: "a block 'name { ... }'"
-    /// In the order of the text. Reports what keeps it from telling the models apart.
+    /// The models in the order of the text. Reports faults that keep it from telling them apart.
     std::vector<ForeignModel> (*models)(const ForeignFile& file);
     /// Nothing after an error.
     std::optional<Translation> (*translate)(const ForeignFile& file, const ForeignModel& model);

@@ -276,7 +276,7 @@ std::optional<InstLowerer::Placement> InstLowerer::lower_placement(const InstGro
     Placement placement;
     const std::optional<Affine> map = lower_transforms(group.transforms, environment_, scratch_, draws_);
     const std::optional<Tint> tint =
-        group.scatter ? Tint() : lower_tints(group.tints); // those of a scatter vary
+        group.scatter ? Tint() : lower_tints(group.tints); // tints of a scatter vary
     if (group.material && materials_.contains(*group.material))
         placement.material = materials_.at(*group.material);
     if (group.hue) placement.hue = lower_hue(*group.hue);

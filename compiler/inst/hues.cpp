@@ -189,7 +189,7 @@ class HueStates {
     std::deque<Open> open_;
     std::set<std::string> names_, material_names_;
     std::map<std::string, unsigned> numbers_;
-    std::set<MaterialId> pictures_; ///< that were noted
+    std::set<MaterialId> pictures_; ///< pictures noted
     std::size_t instances_ = 0;
     double work_left_; ///< at the beginning
     bool left_out_ = false;

@@ -27,7 +27,7 @@ using StepKind = InstInkStep::Kind;
 constexpr std::size_t most_new_objects = 100'000;
 /// Inks of an object that are looked at for the nearest: its last ones.
 constexpr std::size_t most_neighbours = 256;
-/// Inks are told apart by so many steps of each channel.
+/// Steps of each channel that tell inks apart.
 constexpr double ink_steps = 65'536;
 
 double wrapped_degrees(double degrees) {

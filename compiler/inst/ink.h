@@ -28,7 +28,7 @@ struct InkStep {
     InkChannel channel = InkChannel::hue;
     double number = 0; ///< degrees, a factor or a target
     double share = 0;  ///< of the way to the target
-    Ink ink;           ///< that is set
+    Ink ink;           ///< ink to set
 };
 
 /// The change of the ink on the way from an instance to its master.

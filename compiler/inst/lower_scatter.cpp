@@ -33,7 +33,7 @@ struct Range {
     double at(double t) const { return from + t * (to - from); }
 };
 
-/// Cosine and sine of so many turns, by additions and multiplications alone, which all machines round alike.
+/// Cosine and sine of an angle in turns, by additions and multiplications, which all machines round alike.
 Vec2 on_circle(double turns) {
     const double quarter = std::floor(4 * turns + 0.5);
     const double x = (turns - quarter / 4) * 2 * std::numbers::pi, square = x * x;
@@ -305,7 +305,7 @@ class ScatterLowerer {
         return static_cast<std::size_t>(found - up_to_.begin());
     }
 
-    /// About a horizontal axis of any direction.
+    /// The lean of an instance, about a horizontal axis of any direction.
     Mat3 lean(std::size_t i) const {
         const double direction = 360 * draw(lean_directions, i);
         return rotation(1, direction) * rotation(0, lean_.at(draw(leans, i))) * rotation(1, -direction);

@@ -200,7 +200,7 @@ class InstLowerer {
     std::unordered_map<std::string, ObjectId> shapes_;   ///< primitives of numbers, by their references
     std::unordered_map<Primitive, ObjectId> primitives_; ///< of the first `indexed_` objects
     std::size_t indexed_ = 0;
-    std::unordered_map<std::string, unsigned> repeat_numbers_; ///< so far, by the names of objects
+    std::unordered_map<std::string, unsigned> repeat_numbers_; ///< counts so far, by object name
     std::set<const InstDefinition*> failed_;
     std::set<const Expression*> rounded_; ///< hues that have a note
     std::unordered_map<const InstDefinition*, std::size_t> tuples_;

@@ -13,7 +13,7 @@ namespace graftal {
 
 namespace {
 
-/// Where so many darts in a row miss, a hundredth of the area or so is still open.
+/// Darts that miss in a row once about a hundredth of the area is still open.
 constexpr double most_misses = 400;
 /// Candidates around each place: Bridson's 30 leave gaps.
 constexpr int candidates = 60;
@@ -45,7 +45,7 @@ class Draws {
 /// Places by cell, so that those near a place are found at once.
 class NearGrid {
   public:
-    /// For some `count` places, which may be many more than fit.
+    /// A grid for about `count` places, which may be many more than fit.
     NearGrid(const FlatArea& area, double apart, std::size_t count) : low_(area.low), apart_(apart) {
         const Vec2 extent = area.high - area.low;
         const double most_cells = 4 * static_cast<double>(count) + 4;

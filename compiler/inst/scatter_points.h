@@ -25,8 +25,8 @@ struct ScatterArea {
 // They depend on these arguments alone (a meter counts the random numbers; null: nobody does), and are made
 // by additions, multiplications and roots, which all machines round alike.
 
-/// None nearer to another than `apart` (> 0): darts, thrown until most of them miss, then candidates around
-/// every place (Bridson 2007, "Fast Poisson disk sampling in arbitrary dimensions"), until the area is full.
+/// Places no nearer to each other than `apart` (> 0): darts, thrown until most of them miss. Then candidates
+/// around every place fill the area (Bridson 2007, "Fast Poisson disk sampling in arbitrary dimensions").
 std::vector<Vec2> poisson_points(const ScatterArea& area, std::size_t count, double apart,
                                  CounterRandom random, WorkMeter* meter = nullptr);
 

@@ -46,7 +46,7 @@ const std::array<glm::dvec2, 64>& slopes() {
     return all;
 }
 
-/// In [-1, 1]; 0 on the points of the lattice, and smooth between them.
+/// A number in [-1, 1]: 0 on the points of the lattice, and smooth between them.
 double gradient_noise(glm::dvec2 at, std::uint32_t seed) {
     const glm::dvec2 corner = glm::floor(at), f = at - corner;
     const auto& table = slopes();

@@ -67,7 +67,7 @@ class Cutter {
         for (; cut < end - 1; ++cut) {
             const double next = line(region, across, cut - 1);
             if (before + next > 0.5 * region.light) {
-                // On the nearer side of the line that holds the middle.
+                // The cut is on the nearer side of the line that holds the middle.
                 if (cut - 1 > begin && 0.5 * region.light - before < before + next - 0.5 * region.light)
                     --cut;
                 break;
@@ -126,7 +126,7 @@ class Cutter {
     }
 
     const SkyCells& cells_;
-    std::priority_queue<Region> open_; ///< that can be halved
+    std::priority_queue<Region> open_; ///< regions to halve
     std::vector<Region> closed_;
     unsigned next_number_ = 0;
 };

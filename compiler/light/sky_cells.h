@@ -27,11 +27,11 @@ struct SkyRegion {
     Rgb power;      ///< radiance times steradians, less what its spread takes from the light of a surface
 };
 
-/// At most so many regions, and at least one for each side of the horizon that has light; fewer where the
-/// light lies in fewer cells. Again and again it halves the light of that region whose light is spread
-/// widest, across its longer side (Debevec, "A median cut algorithm for light probe sampling", 2005;
-/// Viriyothai and Debevec, "Variance minimization light probe sampling", 2009). A surface that has all of a
-/// region before it takes as much light from its one direction as from all of it, nearly. Deterministic.
+/// At most `count` regions, and at least one for each side of the horizon that has light; fewer where the
+/// light lies in fewer cells. The region whose light is spread widest is halved again and again, across its
+/// longer side (Debevec, "A median cut algorithm for light probe sampling", 2005; Viriyothai and Debevec,
+/// "Variance minimization light probe sampling", 2009). A surface before a whole region takes nearly as much
+/// light from its one direction. Deterministic.
 std::vector<SkyRegion> sky_regions(const SkyCells& cells, unsigned count, bool above_only);
 
 } // namespace graftal

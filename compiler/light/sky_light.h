@@ -25,7 +25,7 @@ struct ClearSky {
     /// on it.
     ClearSky(double turbidity, Vec3 to_sun, Vec3 up);
 
-    /// In kcd/m2, of a direction (unit) in the upper half; below, as at the horizon.
+    /// The radiance in kcd/m2 of a direction (unit) in the upper half; below, that at the horizon.
     Rgb radiance(Vec3 direction, Vec3 up) const;
 
     std::array<std::array<double, 5>, 3> perez; ///< of Y, x and y

@@ -24,8 +24,8 @@ std::vector<float> mean_light(const std::vector<SkyPicture::Texel>& texels) {
     return light;
 }
 
-/// The picture looked at on a lattice that is as fine as its texels, or a whole number of times finer, and
-/// has an even number of rows. `look(column, row, direction, radiance * steradians)`.
+/// The picture on a lattice as fine as its texels, or a whole number of times finer, with an even number of
+/// rows. `look(column, row, direction, radiance * steradians)`.
 struct Lattice {
     int columns, rows;
 

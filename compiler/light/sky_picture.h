@@ -26,15 +26,15 @@ class SkyPicture {
   public:
     using Texel = std::array<float, 3>; ///< linear red, green, blue
 
-    /// Row by row, the top first. Requires width, height >= 1, so many texels, all finite and not negative.
+    /// Requires width, height >= 1; all their texels, row by row from the top, finite and not negative.
     SkyPicture(int width, int height, std::vector<Texel> texels);
 
     int width() const { return width_; }
     int height() const { return height_; }
 
-    /// From a direction (unit).
+    /// The radiance from a direction (unit).
     Rgb radiance(Vec3 direction) const;
-    /// At u to the right and v downwards, in [0, 1]: as a picture.
+    /// The radiance at u to the right and v downwards, in [0, 1]: as a picture.
     Rgb radiance_at(double u, double v) const;
     /// The irradiance of a surface that faces up, over pi.
     Rgb on_paper() const { return on_paper_; }

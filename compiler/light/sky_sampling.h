@@ -9,11 +9,11 @@
 
 namespace graftal {
 
-/// Directions by chance, more of them where a picture of the sky is bright: in longitude and latitude their
-/// density runs linearly between the middles of texels, as the light does. It is found as a texel, by a table
-/// of rows and one of each row's columns (Pharr, Jakob and Humphreys, "Physically Based Rendering", 3rd ed.,
-/// 14.2.4), and a way from its middle, by a tent. Only the light above the mean counts, since another
-/// strategy finds the rest as well: Karlik, Sik, Vevoda, Skrivan and Krivanek, "MIS Compensation" (2019).
+/// Directions by chance, more of them where a picture of the sky is bright. In longitude and latitude their
+/// density runs linearly between the middles of texels, as the light does. A table of rows and one of each
+/// row's columns give a texel (Pharr, Jakob and Humphreys, "Physically Based Rendering", 3rd ed., 14.2.4); a
+/// tent gives the way from its middle. Only light above the mean counts, since another strategy finds the
+/// rest as well: Karlik, Sik, Vevoda, Skrivan and Krivanek, "MIS Compensation" (2019).
 class SkySampling {
   public:
     /// `light` of texels, row by row, the top first. Requires that each is finite and not negative.

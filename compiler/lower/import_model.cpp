@@ -86,7 +86,7 @@ std::optional<FileId> read_file(Span use_span, const std::string& path, Lowering
     return std::nullopt;
 }
 
-/// In one of our languages.
+/// The text of a used file in one of our languages.
 std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering& lowering) {
     if (const auto known = lowering.own_texts.find(path); known != lowering.own_texts.end()) {
         if (!known->second) ++lowering.known_failures;

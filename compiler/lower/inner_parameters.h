@@ -9,12 +9,12 @@
 
 namespace graftal {
 
-/// `inner k = 0.5 members 16`: a number in [0, 1] that says which of its family a model is, each map or
-/// length following it within a range of its own. Who uses the model may give it.
+/// `inner k = 0.5 members 16`: a number in [0, 1] that says which of its family a model is. Each map or
+/// length follows it within a range of its own. Users of the model may give it.
 struct InnerParameter {
     std::string name;
     double value = 0;        ///< if it is not given
-    std::size_t members = 0; ///< into so many values it is rounded where a family must be finite; at least 2
+    std::size_t members = 0; ///< values that it is rounded to where a family must be finite; at least 2
     Span span;
 };
 
@@ -42,8 +42,8 @@ std::vector<double> nearest_member(std::span<const InnerParameter> parameters,
 /// The values of the parameters by name.
 Environment named_values(std::span<const InnerParameter> parameters, const std::vector<double>& values);
 
-/// The first argument for a parameter that lies outside of [0, 1] by more than rounding, as the error "'k' of
-/// 'leaf' lies between 0 and 1, not at 2"; an empty text if there is none.
+/// The error of the first argument that lies outside of its parameter's range, [0, 1], by more than
+/// rounding: "'k' of 'leaf' lies between 0 and 1, not at 2". An empty text if there is none.
 std::string inner_argument_error(std::string_view model, std::span<const InnerParameter> parameters,
                                  std::span<const double> arguments);
 

@@ -52,9 +52,9 @@ struct Language {
 std::unique_ptr<const ModelTree> parse_model(const Language& language, FileId file, const SourceMap& sources,
                                              std::span<const Language> languages, Diagnostics& diagnostics);
 
-/// The language of a file: by its name, for standard input by the first word outside of braces that only one
-/// language begins a statement with, else the last of the table. Null where the name has none of their
-/// extensions.
+/// The language of a file by its name; null where the name has none of the extensions. The language of
+/// standard input is the one that alone begins a statement with the first such word outside of braces, else
+/// the last of the table.
 const Language* language_of(FileId file, const SourceMap& sources, std::span<const Language> languages);
 
 /// ".lsys, .rifs or .inst"

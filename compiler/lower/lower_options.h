@@ -34,7 +34,7 @@ struct LowerOptions {
     std::string root;
     bool exact = false; ///< L-systems are derived module by module: one honest random tree
     std::uint64_t max_modules = 50'000'000; ///< of a derived word
-    std::uint64_t run_from = 4096; ///< derived words of so many modules make a run, if they repeat little
+    std::uint64_t run_from = 4096; ///< least modules of a derived word that makes a run, if little repeats
     std::size_t max_objects = 1'000'000; ///< a model that enumerates more is an error
     /// A model that draws nothing is an error; with this the root model may, with a note, and gives its
     /// `derivation` but no graph.

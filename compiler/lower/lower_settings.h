@@ -7,9 +7,9 @@
 
 namespace graftal {
 
-/// The values of the `let` and `inner` statements, in the order of the text, with `--set` in place of a value
-/// where this is the root model. Errors: duplicates, unknown names (also of `--set`), values that are not
-/// finite, inner parameters outside of [0, 1].
+/// The values of the `let` and `inner` statements, in the order of the text. `--set` replaces a value where
+/// this is the root model. Errors: duplicates, unknown names (also of `--set`), values that are not finite,
+/// inner parameters outside of [0, 1].
 Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering);
 /// Evaluates `let`s on top of `outer` values, which they may use and hide, and does not check that `--set`
 /// names are known. `inner`: values of inner parameters, by name, in place of their own.

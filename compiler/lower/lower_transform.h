@@ -35,8 +35,8 @@ std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Envi
 std::optional<double> lower_size_px(const Expression& size_px, const Environment& environment,
                                     Diagnostics& diagnostics, const ChanceDraws& draws = {});
 
-/// The primitive that so many numbers make of its kind; nothing, after an error, where they make none.
-/// Requires takes_count(kind, numbers.size()).
+/// The primitive of a kind that these numbers make; nothing, after an error, where they make none. Requires
+/// takes_count(kind, numbers.size()).
 std::optional<Primitive> lower_primitive(PrimitiveKind kind, std::span<const double> numbers, Span place,
                                          Diagnostics& diagnostics);
 

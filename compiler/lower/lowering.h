@@ -35,7 +35,7 @@ struct LoadingFile {
     std::string path;                  ///< normalised, so that a cycle is noticed
     Span use_span;                     ///< of the `use` that asked for it; unknown for the root
     Environment inner = {};            ///< values of its inner parameters, where they are given
-    std::optional<PartCall> part = {}; ///< what is asked for, if it is not the whole picture
+    std::optional<PartCall> part = {}; ///< the part asked for, if not the whole picture
     std::size_t failures_before = 0;   ///< Lowering::failures() before it was parsed
 };
 
@@ -55,7 +55,7 @@ struct Lowering {
     const LowerOptions& options;
     const LowerHelp& help;
     WorkMeter& meter;                    ///< of modules, parts and objects
-    std::span<const Language> languages; ///< that models may be written in
+    std::span<const Language> languages; ///< languages of models
     ParsedFiles& parsed;
     std::vector<LoadingFile> loading = {}; ///< from the root model to the file being lowered
     /// Models already lowered; null after errors. A model used twice is read and reported once.
@@ -111,8 +111,8 @@ std::optional<ObjectId> import_part(Graph& into, const std::unordered_map<std::s
 /// The most instances that one model may have, as a multiple of LowerOptions::max_objects.
 inline constexpr std::size_t max_instances_per_object = 4;
 
-/// Whether colours that make a graph of so many objects and instances are to be left out: a note at `place`
-/// says so (LowerOptions::may_leave_out_colours). `work_left`: before they were made, in seconds.
+/// Whether colours that make a graph of this size are to be left out: a note at `place` says so
+/// (LowerOptions::may_leave_out_colours). `work_left`: before they were made, in seconds.
 bool leaves_out_colours(std::size_t objects, std::size_t instances, double work_left, Span place,
                         Lowering& lowering);
 

@@ -13,8 +13,8 @@
 
 namespace graftal {
 
-/// A model with inner parameters inside another: its members, each of which is made when it is first asked
-/// for, so that a plant with a thousand leaves of different shapes has no more leaves than its family.
+/// A model with inner parameters inside another: its members, each made when it is first asked for. So a
+/// plant with a thousand leaves of different shapes has no more leaves than its family.
 class ModelFamily {
   public:
     /// The root of the member with these values; nothing after an error. Called once for the same values.

@@ -15,9 +15,9 @@ namespace graftal {
 /// A name for objects of a module: the letters and digits of the symbol.
 std::string object_name(std::string_view symbol);
 
-/// Makes objects of a graph of lists of instances, equal lists once: lists are equal if they are the same up
-/// to a uniform scale, each number to 1e-11 of the largest (of the translations) or of its own map's. So the
-/// levels of a self-similar model become one object wherever nothing but their size differs.
+/// Makes objects of a graph of lists of instances, equal lists once. Lists are equal if they are the same up
+/// to a uniform scale. Each number agrees to 1e-11 of the largest (of the translations) or of its own map's.
+/// So the levels of a self-similar model become one object wherever nothing but their size differs.
 class ObjectPool {
   public:
     /// `graph` must outlive this.

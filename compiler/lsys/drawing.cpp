@@ -51,17 +51,17 @@ struct Rounding {
     double snap_angle_deg = 0;
 };
 
-/// With more, of which few serve twice, nothing is composed.
+/// Composing ends with more parts than this if few of them serve twice.
 constexpr std::size_t most_single_parts = 16'384;
-/// With so many, where the word is too long for a run, they will be too many.
+/// Composing this many parts fails where few serve twice and the word is too long for a run.
 constexpr std::size_t most_parts_once_each = 131'072;
-/// Nor are sizes rounded where the word has so few modules.
+/// Words of up to this many modules are drawn into a run before sizes are rounded.
 constexpr std::uint64_t most_modules_of_exact_runs = 1'000'000;
 
 // Derivations whose levels are looked at for repetition.
 constexpr unsigned first_limit_steps = 24;
 constexpr unsigned last_limit_steps = 192;
-/// With more parts than this no longer derivation is tried, nor is one gone on with.
+/// Longer derivations are not tried, nor gone on with, if one has more parts than this.
 constexpr std::size_t most_limit_parts = 1000;
 constexpr std::size_t most_parts_of_one_limit = 16'384;
 
@@ -249,7 +249,7 @@ class Drawer {
         may_refuse_ = few_serve_twice_ || gave_up_;
     }
 
-    /// For graphs that are thrown away: it does not matter there which models stand in their places.
+    /// Models for graphs that are thrown away, where it does not matter which models stand in their places.
     static ModelPlacer stand_ins(Graph& scratch) {
         return [&scratch](SymbolId, std::span<const double>, Span) {
             return PlacedModel{scratch.primitive(PrimitiveKind::sphere), Vec3(1.0)};
@@ -379,7 +379,7 @@ class Drawer {
         for (; judged < variants_; ++judged) {
             const std::optional<TurtlePart> part = composition.variant(judged);
             if (!part) break;
-            // In units of 2^shift, since the counts may be beyond doubles.
+            // The unit of counts is 2^shift, since they may be beyond doubles.
             const BigCount drawn = part->segments + part->bodies;
             if (judged == 0 && drawn > 0) shift = std::max(0, static_cast<int>(msb(drawn)) - 60);
             const double count = BigCount(drawn >> shift).convert_to<double>();
@@ -429,7 +429,7 @@ class Drawer {
                               TurtleCommand::set_tropism, TurtleCommand::bend_down});
     }
 
-    /// From what is exact to what is coarse.
+    /// Adds roundings from exact to coarse.
     void add_roundings() {
         roundings_.push_back({});
         if (has_sizes()) {
@@ -495,7 +495,7 @@ class Drawer {
     std::uint32_t variants_ = 1;
     double drift_ = 0;
     bool limited_by_work_ = false;   ///< the variants are fewer than the drift asks for
-    std::deque<Rounding> roundings_; ///< that are left to try; the first is in use
+    std::deque<Rounding> roundings_; ///< left to try; the first is in use
     std::vector<Material> palette_;  ///< of the colour indices
 };
 

@@ -23,7 +23,7 @@ struct LsysDrawOptions {
     std::uint64_t max_modules = 50'000'000; ///< of the word
     /// Number of parameters before the scale, of each model that has inner ones.
     std::map<SymbolId, std::size_t> inner;
-    bool has_other_models = false; ///< than primitives of finite size
+    bool has_other_models = false; ///< one is no primitive of finite size
     std::size_t max_parts = 1'000'000;
     std::uint64_t run_from = 4096; ///< words of so many modules are drawn into a run, if they repeat little
     WorkMeter* meter = nullptr;    ///< counts modules, each time that one is looked at; null: nobody does
@@ -37,16 +37,16 @@ struct LsysDrawing {
     bool limited_by_work = false; ///< with more work allowed it would be another
 };
 
-/// Draws what a grammar derives into `graph`. A word that is derived is composed of its pieces, each drawn
-/// once, where they repeat; where little does, its round bodies go into a run (graph/run.h). `models` places
+/// Draws what a grammar derives into `graph`. A derived word is composed of its pieces, each drawn once,
+/// where they repeat. Where little does, its round bodies go into a run (graph/run.h). `models` places
 /// models there; `pool` makes the objects. Nothing after an error.
 ///
-/// Of random parts there are as many variants as keep the drift, the relative standard error of the mean
-/// number of segments over a pool, below 5 % by the theory for independent samples
-/// (nu_n = n nu / K, nu the relative variance of one level); stratified ones stray less.
+/// Random parts have as many variants as keep the drift below 5 %: the relative standard error of the mean
+/// number of segments over a pool. The theory for independent samples gives it (nu_n = n nu / K, nu the
+/// relative variance of one level); stratified ones stray less.
 ///
-/// Where sizes, or directions, make too many parts, those that differ by little are taken for equal, and by
-/// as little as does: Derivation::error bounds the displacement.
+/// Where sizes, or directions, make too many parts, those that differ by little are taken for equal, by as
+/// little as suffices: Derivation::error bounds the displacement.
 std::optional<LsysDrawing> draw_lsys(const LsysGrammar& grammar, const ModelPlacer& models,
                                      const LsysDrawOptions& options, Graph& graph, ObjectPool& pool,
                                      Diagnostics& diagnostics);

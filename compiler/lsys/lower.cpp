@@ -24,7 +24,7 @@ namespace graftal {
 
 namespace {
 
-/// Recursion composes nested blocks.
+/// Blocks nest at most this deep: recursion composes them.
 constexpr unsigned max_block_nesting = 256;
 
 constexpr const char* no_steps_hint =
@@ -110,7 +110,7 @@ class LsysLowering {
         use.family.emplace(std::string(source.name.text), std::move(parameters), make);
     }
 
-    /// Also checks the names of blocks and of `--set`.
+    /// Builds the grammars of the blocks, and checks the names of blocks and of `--set`.
     void build_grammars() {
         Environment all_lets = lets_;
         const LsysBlock* main = nullptr;

@@ -23,9 +23,9 @@ double branch_taper(const LsysGrammar& grammar);
 /// the figure is known.
 double stated_width(const LsysGrammar& grammar);
 
-/// The width that the turtle starts with, of a figure with these segments that reaches so far from its start.
-/// Lines are as thick as the figure asks, but thinner than the longest segment is long, and not so thin that
-/// those segments vanish that make up most of the line. Requires some segments.
+/// The width that the turtle starts with, for a figure with these segments and this reach from its start.
+/// Lines are as thick as the figure asks, but thinner than the longest segment is long. Most of the line's
+/// segments stay visible. Requires some segments.
 double width_for(const LsysGrammar& grammar, const LengthTally& lengths, double reach);
 
 } // namespace graftal

@@ -130,7 +130,7 @@ class PlyReader {
         return true;
     }
 
-    /// Before anything is read: each element takes a byte at least.
+    /// Checks the counts before anything is read: each element takes a byte at least.
     bool check_counts() {
         std::uint64_t sum = 0;
         for (const Element& element : elements_) {

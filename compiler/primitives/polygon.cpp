@@ -68,7 +68,7 @@ class Polygon : public Shape {
     std::vector<Triangle> pieces;
     AreaSampler areas;
     Box box;
-    double seam = 0; ///< what lies nearer to an edge is on it
+    double seam = 0; ///< a point nearer to an edge is on it
 };
 
 const Polygon& form_of(const Primitive& primitive) {
@@ -122,7 +122,7 @@ std::vector<ConvexPart> convex_parts(const Primitive& primitive) {
     return parts;
 }
 
-/// About that of a disc as large.
+/// About the inner radius of a disc as large.
 double inner_radius(const Primitive& primitive) {
     const Vec3 size = form_of(primitive).box.size();
     return 0.5 * std::max(std::min(size.x, size.y), 1e-3 * std::max(size.x, size.y));

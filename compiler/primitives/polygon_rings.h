@@ -19,9 +19,9 @@ struct PolygonRings {
     std::vector<std::uint32_t> ring_ends; ///< behind the last corner of each ring
 };
 
-/// Rings from a list of points, as POV-Ray's polygon has them: a ring ends where its first point comes again;
-/// the last may be left open. Nothing, and what is at fault, where a ring has fewer than three corners or no
-/// area, or rings cross or touch themselves or each other. O(corners^2).
+/// Rings from a list of points, as POV-Ray's polygon has them: a ring ends where its first point comes
+/// again; the last may be left open. Nothing, and the fault, where a ring has fewer than three corners or no
+/// area, or where rings cross or touch. O(corners^2).
 std::optional<PolygonRings> polygon_rings(std::span<const PlanePoint> points, std::string& fault);
 
 /// Triangles over the rings' corners that fill the points inside an odd number of rings, counter-clockwise.

@@ -47,8 +47,8 @@ struct HullPiece {
 /// A convex body, given by its corners.
 struct ConvexPart {
     std::vector<Vec3> corners;
-    /// If not 0: the corners are those of two convex rings of so many, one after the other, and the edges of
-    /// one have the directions of the other's, or are points.
+    /// Number of corners in each of two convex rings, one after the other, or 0. The edges of one ring have
+    /// the directions of the other's, or are points.
     std::size_t ring = 0;
 };
 
@@ -89,8 +89,8 @@ struct PrimitiveArguments {
 /// them breaks the invariant that nobody asks.
 struct PrimitiveTraits {
     PrimitiveArguments arguments;
-    /// Makes a primitive of so many finite numbers, or says what is wrong with them. Null for plain kinds,
-    /// and for what a file makes.
+    /// Makes a primitive of finite numbers, or says what is wrong with them. Null for plain kinds, and for
+    /// kinds that a file makes.
     std::optional<Primitive> (*make)(std::span<const double> numbers, std::string& fault) = nullptr;
 
     bool bounded = true;
@@ -100,7 +100,7 @@ struct PrimitiveTraits {
     Ball (*ball)(const Primitive&);
     /// A point that is farthest along a direction, which need not be of unit length.
     Vec3 (*support_point)(const Primitive&, Vec3 direction);
-    /// At least how far along the direction that is, where the point takes long to find; else null.
+    /// An upper bound of the reach along a direction, where that point takes long to find; else null.
     double (*reach)(const Primitive&, Vec3 direction) = nullptr;
     /// Things whose hull holds it.
     std::vector<HullPiece> (*hull)(const Primitive&);
@@ -138,7 +138,7 @@ struct PrimitiveTraits {
 
     /// intersect() of a ray that is sane (intersect.h).
     bool (*intersect)(const Primitive&, const Ray&, const RayRange&, PrimitiveHit&);
-    /// The same within so many steps, where a ray may take many; else null.
+    /// intersect() within `most_steps`, where a ray may take many; else null.
     bool (*intersect_within)(const Primitive&, const Ray&, const RayRange&, PrimitiveHit&,
                              std::uint64_t most_steps) = nullptr;
 };

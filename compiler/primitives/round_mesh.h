@@ -8,8 +8,8 @@
 
 namespace graftal {
 
-/// A regular n-gon whose corners are this far out strays from the unit circle by the same length at its
-/// corners (outside) and at the middles of its sides (inside).
+/// The radius of a regular n-gon that strays equally from the unit circle at its corners (outside) and at
+/// the middles of its sides (inside).
 double balanced_radius(int sides);
 /// The length by which the n-gon of balanced_radius() strays from the unit circle.
 double balanced_error(int sides);

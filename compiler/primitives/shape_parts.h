@@ -28,7 +28,7 @@ Vec3 area_normal(const Triangle& triangle);
 /// The point of the triangle that two numbers of [0, 1) choose evenly.
 Vec3 point_of(const Triangle& triangle, double u, double v);
 
-/// About the middle of their box; its radius is less than a quarter too large.
+/// A ball about the middle of the points' box; its radius is less than a quarter too large.
 Ball ball_about(std::span<const Vec3> points);
 Box box_about(std::span<const Vec3> points);
 Vec3 farthest_of(std::span<const Vec3> points, Vec3 direction);

@@ -104,7 +104,7 @@ TessellatedPrimitive mesh(const Primitive&, int fineness) {
     return mesh;
 }
 
-/// For what does not know that a sphere's shadow is an ellipse.
+/// The parts for callers that do not know that a sphere's shadow is an ellipse.
 std::vector<ConvexPart> convex_parts(const Primitive& sphere) {
     return {{mesh(sphere, 1).vertices, 0}};
 }

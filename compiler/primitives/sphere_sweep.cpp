@@ -121,7 +121,7 @@ class SweepMesh {
         for (std::size_t i = 0; i < rings.size(); ++i)
             at.push_back(i == 0 ? 0 : length += glm::distance(rings[i].centre, rings[i - 1].centre));
         if (!(length > 0)) length = 1;
-        // From the first ball's pole to its ring, along the curve, and to the last ball's pole.
+        // Rings go from the first ball's pole to its ring, along the curve, and to the last ball's pole.
         for (int row = 0; row < cap_rows; ++row)
             add_ring(rings.front(), tilt(-pi / 2, std::asin(-first), row), 0);
         for (std::size_t i = 0; i < rings.size(); ++i)

@@ -121,7 +121,7 @@ int rows(int fineness) {
 }
 
 double power(double x, double exponent) {
-    constexpr double nothing = 1e-12; // what a cosine of a right angle leaves
+    constexpr double nothing = 1e-12; // the cosine of a right angle, rounded
     return std::abs(x) < nothing ? 0 : std::copysign(std::pow(std::abs(x), exponent), x);
 }
 
@@ -265,7 +265,7 @@ template<typename Function> double crossing(const Function& f, double out, doubl
     return out;
 }
 
-/// The powers of one point take as long as so many nodes of a mesh's tree.
+/// The powers of one point, in nodes of a mesh's tree that take as long.
 constexpr std::uint64_t steps_a_point = 7;
 
 bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
@@ -275,7 +275,7 @@ bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range
     const Passage within =
         both(both(between(-1, 1, o.x, d.x), between(-1, 1, o.y, d.y)), between(-1, 1, o.z, d.z));
     if (!(within.enter <= within.leave)) return false;
-    // From the middle of the box on, where numbers are small.
+    // The search begins in the middle of the box, where numbers are small.
     const double middle = 0.5 * (within.enter + within.leave), half = 0.5 * (within.leave - within.enter);
     if (!std::isfinite(middle) || !std::isfinite(half)) return false;
     const Vec3 start = ray(middle);

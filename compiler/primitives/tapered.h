@@ -32,8 +32,8 @@ inline constexpr TextureWrap tapered_wrap{.around = true, .along = true};
 int prism_sides(int fineness);
 /// The mesh of what has two caps, and normals.
 TessellatedPrimitive tapered_mesh(int fineness, double top);
-/// A cap of n corners, spokes of the given radius at height y, cut into triangles of three equal arcs and
-/// then of halves of arcs: no slivers around one corner.
+/// A cap of n corners, spokes of the given radius at height y. It is cut into triangles of three equal arcs
+/// and then of halves of arcs: no slivers around one corner.
 void add_cap(TessellatedPrimitive& mesh, int n, double radius, double y, bool facing_up);
 
 /// A site of a disc about the y axis.
@@ -61,8 +61,8 @@ inline Passage within_cone(const Vec3& point, const Vec3& direction) {
                            : Passage{std::max(one, other), no_passage.enter};
 }
 
-/// With the radius in place of the height they are all parts of one cone, the cylinder a section of it.
-/// Inlined into the rows of cylinder and cone, whose `top` is a constant.
+/// The primitives are parts of one cone with the radius in place of the height, the cylinder a section of
+/// it. Inlined into the rows of cylinder and cone, whose `top` is a constant.
 inline bool intersect_tapered(double top, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
     const double taper = 1 - top;
     const Vec3 origin(ray.origin.x, 1 - taper * ray.origin.y, ray.origin.z);

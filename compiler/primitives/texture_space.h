@@ -12,8 +12,8 @@ namespace graftal {
 /// The u of a point of what goes round the y axis, from +z to +x.
 double turn_about_y(const TextureSpace& space, Vec3 point);
 
-/// The length of a cylinder placed by this map as a share of its circumference at y = 0. Of the instance's
-/// own map: so that it is the same wherever what holds the instance is placed.
+/// The length of a cylinder placed by this map as a share of its circumference at y = 0. The map is the
+/// instance's own: the share is the same wherever the instance's holder is placed.
 double length_in_turns(const Mat3& parent_from_primitive);
 
 /// The space of a primitive of a material with this `around`. Pictures keep their proportions as nearly as

@@ -136,14 +136,13 @@ SurfaceSite site(const Primitive&, Vec3 u) {
 }
 
 // A torus lies where (|x|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + z^2). With s the distance along the ray from its
-// point nearest to the centre, this is a quartic without a cubic term whose coefficients are of the order of
+// point nearest to the centre, this is a quartic without a cubic term. Its coefficients are of the order of
 // 1, however far away the ray begins. Closed forms of its roots lose digits, or roots, in just the pictures
-// in which tori are seen from a symmetric side. So the roots are isolated instead: between the quartic's
-// extrema it is monotonous, and a bracket with a change of sign holds one root, which Newton's method cannot
-// leave.
+// in which tori are seen from a symmetric side. So the roots are isolated instead. The quartic is monotonous
+// between its extrema: a bracket with a change of sign holds one root, which Newton's method cannot leave.
 //
-// The extrema need no great care: an error of e in one changes the quartic there by e^2 only, so that half of
-// the digits do.
+// The extrema need no great care: an error of e in one changes the quartic there by e^2 only, so that half
+// of the digits do.
 
 /// The rounding error of the quartic at a root. The quartic's value is about twice a point's distance from
 /// the surface.
@@ -231,7 +230,7 @@ bool intersect(const Primitive&, const Ray& ray, const RayRange& range, Primitiv
     point += rest * along;
     const double away = glm::dot(point, point);
     if (!(away < bound * bound)) return false;
-    // Past the surface on both sides, so that rounding cannot put an end inside.
+    // The ends lie past the surface on both sides, so that rounding cannot put one inside.
     const double half = std::sqrt(1.1 * bound * bound - away);
     if (std::abs(point.y) - std::abs(along.y) * half > tube_radius) return false;
 

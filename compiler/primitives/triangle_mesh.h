@@ -24,9 +24,9 @@ class TriangleMesh : public Shape {
     AreaSampler areas;
 };
 
-/// Without the triangles that have no area or whose corners, in order, are those of an earlier one, and
-/// without the vertices that no triangle has then. Normals get
-/// unit length; one that has none is that of a triangle at the vertex. Requires finite numbers.
+/// The mesh without triangles that have no area or repeat the corners, in order, of an earlier one. Vertices
+/// that no triangle has then go too. Normals get unit length; one that has none is that of a triangle at the
+/// vertex. Requires finite numbers.
 MeshData without_slivers(const MeshData& data);
 
 /// The row of a kind whose shapes are all TriangleMesh, `arguments` and `make` apart.
@@ -49,7 +49,7 @@ std::array<TexturePoint, 3> texture_triangle(const Primitive& primitive, const s
 double area(const Primitive& primitive);
 SurfaceSite site(const Primitive& primitive, Vec3 choice);
 bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit);
-/// intersect() within so many steps (TriangleTree::meet()).
+/// intersect() within `most_steps` (TriangleTree::meet()).
 bool intersect_within(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit,
                       std::uint64_t most_steps);
 

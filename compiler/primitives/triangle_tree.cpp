@@ -69,7 +69,7 @@ Vec3 closest_point(const Triangle& t, Vec3 point) {
 
 } // namespace
 
-/// About the root's middle.
+/// Moments of the corners about the root's middle.
 struct TriangleTree::Spread {
     double count = 0;
     Vec3 sum{0.0};

@@ -10,9 +10,9 @@
 
 namespace graftal {
 
-/// A tree of boxes over triangles, for shapes of many. A box that is much wider than the triangles in it, as
-/// about a needle askew or a fan of needles, is cut by slabs across (J. Klosowski et al., "Efficient
-/// Collision Detection Using Bounding Volume Hierarchies of k-DOPs", 1998, has fixed ones).
+/// A tree of boxes over triangles, for shapes of many. A box may be much wider than its triangles, as about
+/// a needle askew or a fan of needles: slabs across then cut it (J. Klosowski et al., "Efficient Collision
+/// Detection Using Bounding Volume Hierarchies of k-DOPs", 1998, has fixed ones).
 class TriangleTree {
   public:
     /// Requires at least one triangle, and finite corners.
@@ -20,23 +20,23 @@ class TriangleTree {
 
     const std::vector<Triangle>& triangles() const { return triangles_; }
 
-    /// The first triangle that a ray meets within the range, from either side; false if there is none. Of
-    /// triangles that lie no farther apart than `one_depth`, any may be the first. Adds to `steps` the nodes
-    /// that the ray came to and the triangles that it was held against. Ends after `most_steps`, which are
-    /// about as many: the first triangle is then the first one met so far. If none was met, the box that
-    /// the ray came to last is met as a whole.
+    /// The first triangle that a ray meets within the range, from either side; false if there is none. Any
+    /// of triangles no farther apart than `one_depth` may be the first. Adds to `steps` the nodes that the
+    /// ray came to and the triangles that it was held against. Ends after `most_steps`, which are about as
+    /// many: the first triangle is then the first one met so far. If none was met, the box that the ray came
+    /// to last is met as a whole.
     bool meet(const Ray& ray, const RayRange& range, TriangleHit& hit, std::uint32_t& triangle,
               std::uint64_t& steps, std::uint64_t most_steps = UINT64_MAX) const;
 
     /// A corner that is farthest along a direction.
     Vec3 farthest(Vec3 direction) const;
-    /// At least how far that is, and not much more: of the boxes of a few parts.
+    /// An upper bound, and a near one, of the reach along the direction: of the boxes of a few parts.
     double reach(Vec3 direction) const;
 
     /// The triangle that is nearest to a point.
     std::uint32_t nearest(Vec3 point) const;
 
-    /// The numbers of the triangles in parts that lie together, at most so many parts.
+    /// The numbers of the triangles in parts that lie together, at most `most` parts.
     std::vector<std::vector<std::uint32_t>> parts(std::size_t most) const;
 
     /// A share of the largest coordinate.

@@ -20,7 +20,7 @@ namespace graftal {
 
 /// More maps than this in one file are refused while parsing.
 inline constexpr std::size_t max_rifs_maps = 100'000;
-/// More edges and matrix entries than this of one `follow` are refused likewise.
+/// More edges and matrix entries than this in one `follow` are refused while parsing.
 inline constexpr std::size_t max_rifs_edges = 4'000'000;
 
 /// `condense` and `terminal`: a primitive or used model, placed.

@@ -7,13 +7,13 @@
 
 namespace graftal {
 
-/// Random iteration on a recurrent IFS as its probabilities state it (Barnsley, Elton and Hardin 1989),
-/// turned into chances of instances (graph.h): of the walk that takes the maps in the opposite order, from
-/// the last to the first.
+/// Chances of instances (graph.h) for random iteration on a recurrent IFS by its probabilities (Barnsley,
+/// Elton and Hardin 1989). They are those of the walk that takes the maps in the opposite order, from the
+/// last to the first.
 ///
-/// After w_i comes w_j, of those that the control digraph allows, with a chance in proportion to the
+/// After w_i comes w_j, of those that the control digraph allows. Its chance is in proportion to the
 /// probability of w_j and to the entry (i, j) of the matrix, if there is one. With condensation sets, one of
-/// them is begun with anew with its own probability.
+/// them begins anew with its own probability.
 struct RifsChances {
     std::vector<double> share;              ///< by node: of the points, those that w_j is applied to last
     std::vector<double> weight;             ///< by node: what its probability is, or is taken for

@@ -15,7 +15,7 @@ namespace graftal {
 /// A map by formulas: numbers of a point are computed in order, each from x, y, z and those before it.
 struct OrbitFormulas {
     std::string name;                  ///< "" if it has none
-    std::vector<Expression> sources;   ///< what the codes point into: do not change
+    std::vector<Expression> sources;   ///< the codes point into these: do not change
     std::vector<ExpressionCode> codes; ///< the map's own names, then the new x, y and z
     std::vector<std::string> names;    ///< of all values: x, y, z, then the map's own
     double probability = 1;            ///< relative to the other maps
@@ -31,7 +31,7 @@ struct OrbitModel {
     std::uint64_t skip = 100; ///< points at the beginning that do not count
     bool flat = true;         ///< z stays 0
     std::vector<OrbitFormulas> maps;
-    Environment lets; ///< that the formulas use; for messages
+    Environment lets; ///< names of the formulas; for messages
     Graph scene;      ///< its settings and materials; a root that has the maps' colours
     Span span;
 

@@ -35,7 +35,7 @@ class OrbitParser {
     }
 
   private:
-    /// Up to the '}', going on with the next line after an error.
+    /// Parses items up to the '}', going on with the next line after an error.
     template<typename Item> void parse_items(const std::string& what, const Token& open, const Item& item) {
         while (!stream_.accept("}")) {
             if (diagnostics_.full()) return stream_.skip_block();

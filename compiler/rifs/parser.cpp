@@ -271,7 +271,7 @@ class RifsParser {
     const ForeignWords& foreign_;
     RifsFile& file_;
     std::size_t map_room_ = max_rifs_maps;
-    bool lost_ = false; ///< what is no statement here has been reported, and goes on
+    bool lost_ = false; ///< a run of words that are no statement has been reported
 };
 
 } // namespace

@@ -25,7 +25,7 @@ struct RifsNode {
     std::optional<std::uint32_t> from;  ///< the block whose attractor it takes
     std::vector<std::uint32_t> masters; ///< nodes that w_j may follow, ascending
     std::vector<double> weights;        ///< of the masters, from a matrix of probabilities; empty: all alike
-    std::optional<double> probability;  ///< that w_j is chosen, for random iteration
+    std::optional<double> probability;  ///< probability of w_j, for random iteration
     bool empty = false;                 ///< A_j is the empty set
 };
 

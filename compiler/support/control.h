@@ -39,10 +39,10 @@ struct Progress {
 struct Control {
     CancelFlag cancel;
     std::function<void(const Progress&)> on_progress; ///< by the thread that runs the stage
-    StageWork* work = nullptr; ///< what stages before a picture charge their work to; null: nobody does
+    StageWork* work = nullptr; ///< work of stages before a picture; null: nobody counts
 };
 
-/// For callers that neither cancel nor listen.
+/// The control of callers that neither cancel nor listen.
 const Control& no_control();
 
 /// Thrown by a stage that was cancelled: it leaves nothing behind. Session catches it.

@@ -4,8 +4,8 @@
 
 namespace graftal {
 
-/// Random numbers that are a function of key and counter alone (Salmon et al. 2011, "Parallel random numbers:
-/// as easy as 1, 2, 3"), so that none depends on which were drawn before, or by whom. They are mixed as in
+/// Random numbers that are a function of key and counter alone (Salmon et al. 2011, "Parallel random
+/// numbers: as easy as 1, 2, 3"), so that none depends on those drawn before. They are mixed as in
 /// splitmix64 (Steele, Lea and Flood 2014).
 class CounterRandom {
   public:

@@ -20,7 +20,7 @@ struct Diagnostic {
     Severity severity = Severity::error;
     Span span;
     std::string message;
-    std::string hint; ///< what to write instead; may be empty
+    std::string hint; ///< text to write instead; may be empty
     std::vector<Note> notes;
 
     Diagnostic& with_hint(std::string text);
@@ -54,7 +54,7 @@ class Diagnostics {
     const std::vector<Diagnostic>& all() const { return all_; }
 
     /// The GNU form `file:line:column: error: message`, with the line, a caret, the hint and the notes.
-    /// `quiet`: what is of severity note is left out.
+    /// `quiet` leaves notes out.
     std::string render(const SourceMap& sources, bool quiet = false) const;
 
   private:

@@ -44,7 +44,7 @@ class IdTable {
         find_or_add(hash, id, [](std::uint32_t) { return false; });
     }
 
-    /// Makes room for so many.
+    /// Makes room for `count` entries.
     void reserve(std::size_t count);
     /// Forgets all, but keeps its room.
     void clear();

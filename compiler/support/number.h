@@ -12,8 +12,8 @@ std::string shortest(double value);
 /// Appends `value` with at most `digits` significant digits, without trailing zeros; locale-proof.
 void append_number(std::string& out, double value, int digits);
 
-/// Reads all of `text` as a decimal number; nothing if it is malformed, overflows or is no number ("inf").
-/// What is too small for a double is 0.
+/// Reads all of `text` as a decimal number; nothing if it is malformed, overflows or is no number ("inf"). A
+/// number too small for a double is 0.
 std::optional<double> parse_number(std::string_view text);
 
 } // namespace graftal

@@ -39,8 +39,8 @@ class SourceMap {
   public:
     /// Adds a text under the name that diagnostics print. Requires text.size() < 2^32 - 1.
     FileId add(std::string name, std::string text);
-    /// Adds a text that was made of another file of the map, with the place there that each of its lines
-    /// comes from, where it is known. Requires as many `origins` as lines, or fewer.
+    /// Adds a text that was made of another file of the map. `origins`: the place there that each of its
+    /// lines comes from, where that is known. Requires as many `origins` as lines, or fewer.
     FileId add_translation(std::string name, std::string text, FileId original, std::vector<Span> origins);
 
     std::string_view name(FileId file) const { return files_[file]->name; }

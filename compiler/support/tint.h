@@ -15,8 +15,8 @@ struct Tint {
     bool operator==(const Tint&) const = default;
 };
 
-/// The tints of a path composed, colour premultiplied: a monoid (Hart 1992, eq. (9) and (10), with
-/// C_i = alpha_i c_i). What lies nearer to the root stays in front.
+/// The tints of a path composed, colour premultiplied: a monoid (Hart 1992, eq. (9) and (10), with C_i =
+/// alpha_i c_i). Tints nearer to the root stay in front.
 struct PathTint {
     Rgb premultiplied{0.0};
     double alpha = 0;

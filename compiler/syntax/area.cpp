@@ -9,7 +9,7 @@ namespace graftal {
 
 namespace {
 
-/// `r`, `r, x, z` or `r x z`. Of two numbers in a row the second is the count of the scatter: `disc 5 200`.
+/// `r`, `r, x, z` or `r x z`. The second of two numbers in a row is the count of the scatter: `disc 5 200`.
 std::optional<std::vector<Expression>> parse_disc(TokenStream& stream) {
     const std::size_t begin = stream.position();
     const bool brackets = stream.at("<");

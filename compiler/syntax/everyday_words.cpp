@@ -14,7 +14,7 @@ namespace {
 /// A word of everyday English, or of another program, for what the languages call differently.
 struct EverydayWord {
     std::string_view word; ///< in small letters
-    std::string_view how;  ///< what to write
+    std::string_view how;  ///< text to write instead
 };
 
 constexpr std::string_view flat_cylinder = "'cylinder', and flatten it: 'scale: 1, 0.05, 1'";

@@ -38,9 +38,9 @@ using Environment = std::map<std::string, double, std::less<>>;
 /// Uniform numbers of [0, 1) for the calls of `normal` and `random` in an expression.
 using ChanceDraws = std::map<const Expression*, double>;
 
-/// The value, or nothing after an error in `diagnostics`: unknown names (with a suggestion), wrong numbers of
-/// arguments, division by zero, results that are not finite, indices outside of their array, and calls of
-/// `normal` and `random` for which there is no draw. Names of the environment hide those of `cells`.
+/// The value, or nothing after an error in `diagnostics`: unknown names (with a suggestion), wrong numbers
+/// of arguments, division by zero, or results that are not finite. Indices outside of their array, and calls
+/// of `normal` and `random` without a draw, are errors too. Names of the environment hide those of `cells`.
 std::optional<double> evaluate(const Expression& expression, const Environment& environment,
                                Diagnostics& diagnostics, const ChanceDraws& draws = {},
                                const ExpressionCells& cells = {});

@@ -21,8 +21,8 @@ class ExpressionCode {
     /// Names of `variables` are read from the slots of value(), in this order, and hide `constants`. Reports
     /// unknown names and functions and wrong numbers of arguments, and gives nothing then. `expression` must
     /// outlive the code. Each call of `normal` or `random` reads a uniform number of [0, 1) from a slot of
-    /// its own behind those of the variables, the first `*draws`, which is counted up; null: such calls are
-    /// errors. Names that are none of these are looked for among the `cells`, which hide constants.
+    /// its own. These slots lie behind those of the variables and the first `*draws`, which is counted up;
+    /// null: calls are errors. Other names are looked for among the `cells`, which hide constants.
     static std::optional<ExpressionCode> compile(const Expression& expression, const Environment& constants,
                                                  std::span<const std::string_view> variables,
                                                  Diagnostics& diagnostics, std::uint32_t* draws = nullptr,

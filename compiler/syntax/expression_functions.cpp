@@ -41,7 +41,7 @@ double logistic(double t, double limit, double rate, double middle) {
     return limit / (1 + std::exp(-rate * (t - middle)));
 }
 
-/// From 0 at `lo` to 1 at `hi` by 3 x^2 - 2 x^3, level at both ends; a step where they are one.
+/// A step from 0 at `lo` to 1 at `hi` by 3 x^2 - 2 x^3, level at both ends; sudden where they are one.
 double smooth(double lo, double hi, double t) {
     if (lo == hi) return t < lo ? 0 : 1;
     const double x = std::clamp((t - lo) / (hi - lo), 0.0, 1.0);

@@ -13,7 +13,7 @@ namespace graftal {
 /// An expression has at most this many numbers, names and operators, and so at most this depth.
 inline constexpr std::size_t max_expression_size = 1000;
 
-/// Parses one expression, or reports why not and gives nothing; what was taken stays taken.
+/// Parses one expression, or reports why not and gives nothing; tokens that were taken stay taken.
 std::optional<Expression> parse_expression(TokenStream& stream);
 
 /// Parses an expression in a row of numbers without commas. A sign with white space before it and none after
@@ -31,7 +31,7 @@ std::optional<std::vector<Expression>> parse_numbers(TokenStream& stream, std::s
 /// error.
 bool parse_arguments(TokenStream& stream, std::vector<Expression>& arguments);
 
-/// Three numbers, as parse_numbers() reads them.
+/// Parses three numbers, as parse_numbers() reads them.
 std::optional<std::vector<Expression>> parse_vector(TokenStream& stream, std::string_view what);
 
 /// A colour: a vector that `rgb` may precede, three expressions; or `hsv(h, s, v)`, one call of that name

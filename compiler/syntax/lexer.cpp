@@ -129,7 +129,7 @@ class Lexer {
         return false;
     }
 
-    /// Not a comment: it stands where a colour is asked for.
+    /// Whether a '#' begins a colour, not a comment: it stands where a colour is asked for.
     bool at_hex_colour() const {
         if (peek() != '#' || first_on_line_ || tokens_.empty()) return false;
         const Token& before = tokens_.back();
@@ -273,7 +273,7 @@ class Lexer {
         return false;
     }
 
-    /// One character that starts no token; a run of them is reported once. What it was meant as is read, so
+    /// One character that starts no token; a run of them is reported once. Its likely meaning is read, so
     /// that nothing else is reported for it.
     void lex_stray() {
         const std::size_t begin = at_;

@@ -21,7 +21,7 @@ bool closes(const Token& token) {
     return token.is("}") || token.is(")") || token.is("]");
 }
 
-/// At most longest_shown bytes, cut between characters.
+/// The text, or its first longest_shown bytes at most, cut between characters.
 std::string shown(std::string_view text) {
     if (text.size() <= longest_shown) return std::string(text);
     std::size_t size = longest_shown;

@@ -14,8 +14,8 @@ namespace graftal {
 
 /// A parser's view of a file's tokens: looking ahead, taking, expecting, and going on after an error.
 ///
-/// A file that nests brackets of any kind deeper than max_nesting is reported once and then read as empty,
-/// so that parsers may recurse over brackets.
+/// A file that nests brackets deeper than max_nesting is reported once and reads as empty, so that parsers
+/// may recurse over brackets.
 class TokenStream {
   public:
     static constexpr std::size_t max_nesting = 256;
@@ -61,11 +61,11 @@ class TokenStream {
     /// The next token as messages show it: "'x'", "the string \"x\"", "the end of the file".
     std::string found() const;
 
-    /// From a token taken earlier to the token taken last.
+    /// The span from a token taken earlier to the token taken last.
     Span span_from(const Span& first) const { return join(first, previous().span); }
 
-    /// After an error in a line of a block: skips to the next token that begins a line, or to the '}' that
-    /// closes the block, stepping over blocks inside. Takes at least nothing: call it after taking a token.
+    /// Skips the rest of a faulty line of a block, and blocks inside: to the next token that begins a line,
+    /// or to the '}' that closes the block. Takes at least nothing: call it after taking a token.
     void skip_line();
     /// Skips past the '}' that closes the block just opened (or to the end).
     void skip_block();

@@ -29,7 +29,7 @@ struct ExpressionExtent {
     std::size_t words = 0; ///< numbers, names, calls and operators
     std::size_t depth = 0;
 };
-/// With these expressions in place of their names.
+/// The extent of an expression with these expressions in place of their names.
 ExpressionExtent extent_of(const Expression& expression, const ExpressionNames& values);
 
 } // namespace graftal

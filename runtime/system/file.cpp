@@ -41,7 +41,7 @@ Status read_stream(std::FILE* stream, const std::string& path, std::string& text
     return std::ferror(stream) ? system_failure("read", path) : Status();
 }
 
-/// The temporaries that there are, for handlers of signals. What finds no place is left to the next run.
+/// The temporaries, for handlers of signals. One that finds no place is left to the next run.
 SignalRegistry<char, 1024> pending_paths;
 
 /// The times of a temporary that its writer has not opened yet: access, change.
@@ -132,7 +132,7 @@ PendingFile::PendingFile(std::string path) : path_(std::move(path)), status_(out
     create();
 }
 
-/// A file that cannot be made is reported by who writes it.
+/// Makes the temporary. If it cannot be made, writers to it report that.
 void PendingFile::create() {
     static std::atomic<unsigned> count = 0; // two writers of one file do not share a temporary
     const std::filesystem::path target(target_);

@@ -62,7 +62,7 @@ class SceneWriter {
     static std::string disc_text();
 
     std::set<std::string> names_;
-    std::map<std::string, std::string> primitives_; ///< that are used
+    std::map<std::string, std::string> primitives_; ///< primitives in use
     Lattice lattice_;
     std::vector<Affine> copies_;
 };

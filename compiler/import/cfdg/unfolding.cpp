@@ -86,7 +86,7 @@ Translation Unfolding::write() {
         fail(start.span,
              fmt::format("the grammar makes more than {} different shapes before it draws one", most_nodes),
              fewer_shapes);
-    if (fills_) { // what covers all must not frame the picture
+    if (fills_) { // a shape that covers all must not frame the picture
         const Vec3 half = 0.55 * (most_ - least_);
         middle_and_half_ = {0.5 * (least_ + most_), glm::max(half, Vec3(0.05 * std::max(extent_, 1e-3)))};
     }

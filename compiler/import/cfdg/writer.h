@@ -14,7 +14,7 @@ namespace graftal::cfdg {
 
 inline constexpr std::size_t longest_output = 8'000'000;
 
-/// The `.inst` of a grammar, with its parameters as parameters. What `.inst` has no words for is an error.
+/// The `.inst` of a grammar, with parameters as parameters. Constructs that `.inst` lacks are errors.
 class Writer : private SceneWriter {
   public:
     Writer(const ForeignFile& file, const Grammar& grammar);

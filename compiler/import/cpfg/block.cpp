@@ -105,7 +105,7 @@ class BlockReader {
         return names_.expression(text_.substr(begin, at_ - begin - 1), span_);
     }
 
-    /// Up to a semicolon, past strings.
+    /// The text up to a semicolon, past strings.
     std::string_view simple_text() {
         const std::size_t begin = at_;
         bool quoted = false;

@@ -13,8 +13,8 @@ namespace graftal {
 /// A statement of a block, in our language.
 struct CpfgAction {
     enum class Kind { assign, branch, loop, loop_after } kind = Kind::assign;
-    std::string name;   ///< that it assigns
-    std::string target; ///< the same with its indices
+    std::string name;   ///< variable to assign
+    std::string target; ///< variable with its indices
     std::string value;  ///< or the condition
     std::vector<CpfgAction> then, otherwise;
     bool has_otherwise = false;
@@ -22,7 +22,7 @@ struct CpfgAction {
 
 using CpfgBlock = std::vector<CpfgAction>;
 
-/// The statements of a block, whose braces may be missing; nothing after an error. What prints is left out.
+/// The statements of a block, whose braces may be missing; nothing after an error. Printing is left out.
 std::optional<CpfgBlock> read_cpfg_block(std::string_view text, Span span, CpfgNames& names);
 
 /// The block with its braces, on one line.

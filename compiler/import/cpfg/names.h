@@ -58,7 +58,7 @@ class CpfgNames {
     const CpfgView& view_;
     std::set<std::string> lets_;
     std::set<std::string> renamed_; ///< variables of the model
-    std::set<std::string> warned_;  ///< what was said
+    std::set<std::string> warned_;  ///< warnings given
     std::vector<CpfgFunction> tables_;
 };
 

@@ -221,7 +221,7 @@ class SourceReader {
         return false;
     }
 
-    /// With 1 or 0 for `defined(NAME)` and `defined NAME`.
+    /// The text with 1 or 0 for `defined(NAME)` and `defined NAME`.
     std::string without_defined(std::string_view text) const {
         constexpr std::string_view word = "defined";
         std::string out;
@@ -290,7 +290,7 @@ class SourceReader {
     const ForeignFile& file_;
     CodeReader code_;
     CpfgSource source_;
-    CpfgStatement statement_; ///< that is being read
+    CpfgStatement statement_; ///< statement being read
     std::vector<std::pair<std::string, Span>> comments_;
     std::vector<Condition> conditions_;
     std::size_t comment_begin_ = 0;

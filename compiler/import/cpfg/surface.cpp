@@ -44,7 +44,7 @@ std::vector<double> numbers_in(std::string_view line) {
 
 struct Surface {
     Point contact{0, 0, 0}, heading{0, 1, 0}, up{0, 0, 1};
-    double size = 1; ///< a scale of 1 makes it so many times as small
+    double size = 1; ///< the length that a scale of 1 makes 1
     std::vector<std::vector<double>> patches;
     std::vector<Span> places;
 };
@@ -102,8 +102,8 @@ Point of_unit_length(const Point& a) {
     return length > 0 ? Point{a[0] / length, a[1] / length, a[2] / length} : a;
 }
 
-/// In the frame of a turtle that takes hold of it: x right, y ahead, z up. Of a turtle of cpfg, which looks
-/// along its own heading and up, the left is heading x up: its up is our down.
+/// The surface in the frame of a turtle that takes hold of it: x right, y ahead, z up. A turtle of cpfg
+/// looks along its own heading and up, and has its left at heading x up: its up is our down.
 std::optional<Translation> translate_surface(const ForeignFile& file, const ForeignModel& model) {
     const Surface surface = read_surface(file);
     const Point heading = of_unit_length(surface.heading);

@@ -27,7 +27,7 @@ struct CpfgSurface {
 struct CpfgTropism {
     std::string direction; ///< "x, y, z"
     double elasticity = 0;
-    double angle_deg = 0; ///< that headings tend to have with the direction
+    double angle_deg = 0; ///< angle between headings and the direction that they tend to
     bool twists = false;
 };
 
@@ -47,10 +47,10 @@ struct CpfgView {
     double width_increment = 0;
     bool width_in_pixels = true;
     std::vector<CpfgFunction> functions;       ///< number 1 is the first
-    bool functions_have_names = false;         ///< those of a gallery have
+    bool functions_have_names = false;         ///< functions of a gallery do
     std::map<char, CpfgSurface> surfaces;      ///< by their letters
     std::vector<CpfgViewCurve> curves;         ///< number 1 is the first
-    std::string tropism_direction = "0, 1, 0"; ///< that `_` bends towards
+    std::string tropism_direction = "0, 1, 0"; ///< goal of `_`
     double elasticity = 0, elasticity_increment = 0;
     std::vector<CpfgTropism> tropisms; ///< by their numbers
     bool draws_past_cuts = true;

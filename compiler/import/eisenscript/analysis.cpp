@@ -201,7 +201,7 @@ class Growth {
     const Analysis& analysis_;
     bool sized_;
     std::map<State, double> now_, next_;
-    double primitives_ = 0; ///< that the next generation draws
+    double primitives_ = 0; ///< primitives of the next generation
     double objects_ = 0;
     std::size_t work_ = 0;
 };

@@ -243,7 +243,7 @@ class Tokenizer {
         done();
     }
 
-    /// Up to white space or a brace; brackets hold it together.
+    /// Takes a word, up to white space or a brace; brackets hold it together.
     void take_word() {
         const std::size_t begin = at_;
         bool inside = false;

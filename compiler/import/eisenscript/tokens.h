@@ -19,7 +19,7 @@ struct Token {
     bool whole = false;                ///< a number without fraction
     std::string constant;              ///< the `#define` that gave all of the number; "" if none did
     Span span;                         ///< in the file
-    std::vector<std::string> comments; ///< that stand before it
+    std::vector<std::string> comments; ///< comments before it
 
     bool is(std::string_view word) const { return kind == TokenKind::word && text == word; }
 };

@@ -193,8 +193,8 @@ class Writer {
         out_.line("}");
     }
 
-    /// Row i: the factors of `chaos`, divided by their sum. As flam3 does, random iteration multiplies them
-    /// by the weights of the maps, which stand in the rows of codes.
+    /// Row i: the factors of `chaos`, divided by their sum. Random iteration multiplies them by the weights
+    /// of the maps, which stand in the rows of codes, as in flam3.
     void write_chaos() {
         out_.line("  follow matrix {   # 'chaos'");
         for (std::size_t i = 0; i < flame_.maps.size(); ++i) {

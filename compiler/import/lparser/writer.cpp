@@ -318,8 +318,8 @@ class LparserWriter {
     const LparserSystem& system_;
     std::set<char> used_;
     std::set<char> ruled_;
-    std::set<char> plain_;    ///< that may have no number behind them
-    std::set<char> numbered_; ///< that may have a number behind them
+    std::set<char> plain_;    ///< may have no number behind them
+    std::set<char> numbered_; ///< may have a number behind them
     std::string digits_;      ///< of all numbers
 };
 

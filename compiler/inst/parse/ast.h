@@ -39,7 +39,7 @@ struct InstInkStep {
         set,    ///< values: a colour, as parse_color() has it
         change, ///< values: degrees by which the hue turns, or a factor
         toward, ///< values: a target, and the share of the way to it
-        upward, ///< the same of a hue, that only grows on its way, past 360 degrees if it must
+        upward, ///< values as `toward`: a hue that only grows on its way, past 360 degrees if it must
         downward
     };
 
@@ -78,7 +78,7 @@ struct InstRepeat {
 struct InstGroup {
     bool terminal = false;
     std::optional<Expression> below; ///< of a terminal: the size from which down it is drawn
-    /// Then the masters are placed many times, each where it says. Few groups have one, and it is large.
+    /// The scatter that places the masters many times, or null. Few groups have one, and it is large.
     std::unique_ptr<InstScatter> scatter;
     std::vector<InstReference> masters; ///< one or more; one of a terminal
     std::vector<TransformLine> transforms;
@@ -90,7 +90,7 @@ struct InstGroup {
     std::unique_ptr<Expression> hue;  ///< degrees by which the group turns the hues of its masters
     std::vector<InstInkStep> ink;
     std::vector<InstCondition> conditions;
-    std::vector<std::shared_ptr<const InstRepeat>> repeats; ///< that contain the group, the outermost first
+    std::vector<std::shared_ptr<const InstRepeat>> repeats; ///< around the group, the outermost first
     Span span;
 };
 

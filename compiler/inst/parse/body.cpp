@@ -490,7 +490,7 @@ class BodyParser {
     std::size_t group_begin_ = 0; ///< of the lines of the last group
     bool sealed_ = false;         ///< after the '{' or '}' of a block of repeated groups, a line has no group
     std::vector<std::shared_ptr<const InstRepeat>>
-        repeats_;                           ///< that contain the next group, the outermost first
+        repeats_;                           ///< repeats around the next group, outermost first
     std::vector<InstCondition> conditions_; ///< of the next group, the outermost first
     bool conditional_ = false;              ///< the object may draw nothing
     bool lost_group_ = false;               ///< the last group was in error

@@ -124,7 +124,7 @@ class FileParser {
         const Token token = stream_.peek();
         if (token.is("}")) {
             if (open_objects_ > 0)
-                --open_objects_; // that of an object that was left too early
+                --open_objects_; // an object that was left too early
             else
                 diagnostics_.error(token.span, "this '}' closes nothing");
             return;

@@ -97,7 +97,7 @@ class LineParser {
         return true;
     }
 
-    /// Behind `turn: y`: another line may follow on the same one.
+    /// Whether a value follows `turn: y`: another line may go on behind it instead.
     bool begins_value() const {
         const Token& token = stream_.peek();
         if (token.kind == TokenKind::number || token.is("-") || token.is("+") || token.is("(")) return true;

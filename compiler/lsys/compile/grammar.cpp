@@ -429,7 +429,7 @@ class GrammarBuilder {
     std::unordered_map<std::string, SymbolId> ids_;
     std::vector<LsysUse> uses_;              ///< in axiom and successors
     std::vector<const LsysCommand*> locals_; ///< of the rule that is added: the first assignment to each
-    std::size_t locals_before_ = 0;          ///< those of its first block
+    std::size_t locals_before_ = 0;          ///< number of locals of its first block
 };
 
 } // namespace

@@ -63,7 +63,7 @@ struct LsysRule {
     /// The meanings of the slots: the variables; `step` and `age`, or nothing where names of the model hide
     /// them; the local values of the blocks; one random number for each draw.
     std::vector<std::string_view> slots;
-    TimeMask time = 0;       ///< what is read of it
+    TimeMask time = 0;       ///< readings of the time
     std::uint32_t draws = 0; ///< calls of `normal` and `random`
     LsysProgram before;      ///< carried out before the condition is asked; it may set slots
     std::optional<LsysFormula> condition;
@@ -127,7 +127,7 @@ struct LsysGrammar {
     std::vector<Vec3> other_tropisms;       ///< the same, of the second and all further ones
     std::vector<TropismKind> tropism_kinds; ///< of all; empty: of one that is plain
     Bending bending = Bending::after_segments;
-    std::optional<EnvironmentSettings> environment; ///< that answers `?E`; without its seed
+    std::optional<EnvironmentSettings> environment; ///< answers `?E`; without its seed
     Vec3 vertical{0, 1, 0};                         ///< the same, that `$` and `@B` look at
     std::uint64_t seed = 0;
     std::optional<unsigned> steps; ///< nothing: not given, or infinite
@@ -163,7 +163,7 @@ struct LsysGrammar {
 /// The names in programs of steps.
 inline constexpr std::array<std::string_view, 1> step_slots = {"step"};
 
-/// The arrays of a block have at most so many elements, and its variables so many cells, in all.
+/// Most elements of the arrays of a block in all, and most cells of its variables.
 inline constexpr std::uint32_t max_cells = 65'536;
 
 /// Derivations of more steps are refused.

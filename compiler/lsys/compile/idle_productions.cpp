@@ -86,7 +86,7 @@ class IdleProductions {
   private:
     struct State {
         std::vector<Need> needs;
-        std::size_t met = 0; ///< so many of them, the first
+        std::size_t met = 0; ///< number of its first needs that are met
         const LsysRule* hidden_by = nullptr;
         bool is_false = false;  ///< its condition
         bool no_chance = false; ///< by its probability

@@ -24,7 +24,7 @@ double unrounded(double number) {
                                                       1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                       1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22}; // all exact
     constexpr double noise = 8e-15, digits_a_bit = 0.30102999566398120;
-    constexpr double integer = 0x1.8p52; // what is added to it and taken away again is rounded to an integer
+    constexpr double integer = 0x1.8p52; // adding and subtracting this rounds to an integer
     const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(number) >> 52 & 0x7ff) - 1023;
     const int places = 11 - static_cast<int>(std::floor(exponent * digits_a_bit));
     if (places < 0 || places >= static_cast<int>(powers.size())) return number;

@@ -59,7 +59,7 @@ class ProgramCompiler {
     void formula(const Expression& expression, std::optional<LsysFormula>& result) {
         result = compile_formula(expression, names_, diagnostics_);
         if (!result) return;
-        // In place of numbers drawn anew the slots have some from the beginning.
+        // Slots have their random numbers from the beginning, unless these are drawn anew.
         if (names_.draws_anew || loops_ > 0)
             program_.draws_anew |= result->draws > 0;
         else

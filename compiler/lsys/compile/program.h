@@ -89,7 +89,7 @@ LsysProgram compile_program(const LsysCommands& commands, const LsysProgramNames
 std::optional<LsysFormula> compile_formula(const Expression& expression, const LsysProgramNames& names,
                                            Diagnostics& diagnostics);
 
-/// All programs of a derivation may carry out so many instructions.
+/// Most instructions that all programs of a derivation may carry out.
 inline constexpr std::uint64_t max_instructions = 100'000'000;
 
 /// Carries programs out, within one budget.
@@ -104,8 +104,8 @@ class LsysMachine {
     struct State {
         std::span<double> slots;                 ///< with those of chance
         std::span<const std::string_view> names; ///< of the slots
-        std::span<const double> cells;           ///< that are read
-        std::span<double> written_cells;         ///< the same; empty where no program sets any
+        std::span<const double> cells;           ///< cells to read
+        std::span<double> written_cells;         ///< cells to set; empty where no program sets any
         LsysChance* chance = nullptr;            ///< where numbers are drawn anew
     };
     /// False after an error.

@@ -246,7 +246,7 @@ class SurroundingsBuilder {
     LsysGrammar& grammar_;
     Diagnostics& diagnostics_;
     EnvironmentSettings settings_;
-    const LsysEnvironment* other_ = nullptr; ///< that is no region
+    const LsysEnvironment* other_ = nullptr; ///< a statement that is no region
     const LsysEnvironment* plane_ = nullptr;
 };
 

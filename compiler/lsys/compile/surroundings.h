@@ -7,7 +7,7 @@
 namespace graftal {
 
 /// Values of the statements that say what acts upon the turtle from outside (`tropism`, `bending`,
-/// `environment`), in the grammar, whose `lets` are known. Reports what is wrong.
+/// `environment`), in the grammar, whose `lets` are known. Reports faults.
 void build_surroundings(const LsysBlock& block, LsysGrammar& grammar, Diagnostics& diagnostics);
 
 } // namespace graftal

@@ -16,7 +16,7 @@ namespace graftal {
 
 namespace {
 
-/// Rules of one kind may follow each other so often without a step between them.
+/// Most rules of one kind that may follow each other without a step between them.
 constexpr unsigned most_repeated = 1000;
 
 /// Most tries, in all, of productions that wait for their time: some seconds of work.
@@ -172,7 +172,7 @@ bool LsysComposer::rewrite(ModuleId module, Stage stage, std::uint32_t birth, st
         if (result.by) break;
         if (decomposing)
             --stage;
-        else // what no production fits now, none will fit later, unless time decides
+        else // a module that no production fits now, none will fit later, unless time decides
             stage = waits ? result.stage : 0;
     }
     if (waits) fits_at_.emplace(key, stage);

@@ -46,11 +46,11 @@ struct LsysLimits {
     bool steps_unit = true; ///< or the width alone
 };
 
-/// Compiles a derivation without deriving it (Hart 1992, section 4, made automatic): what a module becomes
-/// depends on the module, the steps that are left, and as much of the incoming state of the turtle as its
-/// subtree reads. So each such *part* is composed once, out of the parts of its successor, and costs are
-/// O(parts), not O(length of the word). Where productions are random, the variant of the part (variants.h)
-/// counts as a part of that state.
+/// Compiles a derivation without deriving it (Hart 1992, section 4, made automatic). The outcome of a module
+/// depends on the module, the steps that are left, and the incoming state of the turtle that its subtree
+/// reads. So each such *part* is composed once, out of the parts of its successor, and costs are O(parts),
+/// not O(length of the word). Where productions are random, the variant of the part (variants.h) counts as a
+/// part of that state.
 class LsysComposer {
   public:
     /// All references must outlive this.
@@ -78,7 +78,7 @@ class LsysComposer {
     /// The first part that made an object.
     struct Origin {
         ModuleId module = 0;
-        unsigned steps = 0; ///< that were left
+        unsigned steps = 0; ///< steps left
     };
     const std::unordered_map<ObjectId, Origin>& origins() const { return origins_; }
 
@@ -109,7 +109,7 @@ class LsysComposer {
         ModuleId module = 0; ///< or a piece of the word
         Stage stage = 0;     ///< of the module
         TurtleState start;
-        const LsysRule* rule = nullptr; ///< that the string comes from; null: the axiom, or a word
+        const LsysRule* rule = nullptr; ///< source of the string; null: the axiom, or a word
         ModuleString drawn;             ///< the string, if it has random numbers
         std::span<const ModuleId> string;
         Stage string_stage = 0;
@@ -181,7 +181,7 @@ class LsysComposer {
     std::vector<bool> rewritten_; ///< by symbol
     bool uses_directions_;
     bool decomposes_;
-    bool is_timed_;           ///< what is drawn depends on the time
+    bool is_timed_;           ///< the drawing depends on the time
     std::uint32_t steps_ = 0; ///< of the derivation
     double share_ = 0;        ///< of the next, when it is drawn
     /// Modules with productions that read the time, and so may fit later if not now: by their stage, the one

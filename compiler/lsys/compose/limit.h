@@ -12,14 +12,14 @@ namespace graftal {
 /// Folds the levels of a long derivation into cycles, so that the graph is that of infinitely many steps.
 ///
 /// Objects are taken for the same if their lists of instances agree, numbers to 1e-9, down to `depth` levels
-/// below; the objects of the deepest levels, which see the end of the derivation, are not asked. Where the
-/// classes of the objects that are left are closed under "is instanced by", the graph over the classes
-/// unfolds to the limit of the derivations (Prusinkiewicz and Hammel 1994; Hart 1992, section 4.3).
+/// below. The objects of the deepest levels, which see the end of the derivation, are left out. Where the
+/// classes of the others are closed under "is instanced by", the graph over them unfolds to the limit of the
+/// derivations (Prusinkiewicz and Hammel 1994; Hart 1992, section 4.3).
 ///
 /// The instances of the whole model over the folded graph, or nothing if the levels do not repeat. New
-/// objects are appended to `graph`. `steps`: of the derivation that `origins` belong to. An error in
-/// `diagnostics`, and nothing, if a parameter that changes from level to level decides what is derived: what
-/// repeats for a while need not repeat for ever then.
+/// objects are appended to `graph`. `steps`: of the derivation that `origins` belong to. An error, and
+/// nothing, if a parameter that changes from level to level decides what is derived: repetition need not
+/// last for ever then.
 std::optional<std::vector<Instance>>
 fold_levels(const std::vector<Instance>& instances, unsigned steps,
             const std::unordered_map<ObjectId, LsysComposer::Origin>& origins, const LsysRewriter& rewriter,

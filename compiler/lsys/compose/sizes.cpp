@@ -9,7 +9,7 @@ namespace graftal {
 
 namespace {
 
-/// The power `of` the sizes in an expression that the expression grows by.
+/// The power `of` its sizes with which an expression grows.
 struct Degree {
     bool any = false;         ///< it is 0, which goes with every power
     std::optional<double> of; ///< nothing: with none
@@ -163,7 +163,7 @@ class LsysSizes::Inference {
             for (const LsysTemplate& module : rule.successor)
                 add(module.symbol, module.parameters.size());
         }
-        for (const LsysRule& rule : grammar_.rules) // what blocks make of them nobody knows
+        for (const LsysRule& rule : grammar_.rules) // nobody knows what blocks make of sizes
             if (rule.has_blocks()) roles(rule).assign(roles(rule).size(), ParameterRole::number);
         // Chains of productions take a round each; so long ones are nobody's.
         constexpr int most_rounds = 200;

@@ -8,10 +8,10 @@
 namespace graftal {
 
 /// Chance inside the instancing paradigm: of every part that is random there are `count` variants, numbered.
-/// The alternatives of a production are dealt out to them in proportion to their probabilities (stratified),
-/// and for each place of a string a permutation says which variant of the child goes into which variant of
-/// the parent, so that each child is used equally often. Expectations stay those of honest derivations; the
-/// mean over the pool strays less than that of as many independent samples.
+/// The alternatives of a production are dealt out to them in proportion to their probabilities (stratified).
+/// For each place of a string a permutation says which variant of the child goes into which variant of the
+/// parent: each child is used equally often. Expectations stay those of honest derivations; the mean over
+/// the pool strays less than that of as many independent samples.
 class Variants {
   public:
     /// `count` must be a power of two.

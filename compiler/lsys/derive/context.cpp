@@ -203,7 +203,7 @@ std::optional<std::uint32_t> ContextMatcher::known_branch(std::uint32_t item, st
     return known_[id].found;
 }
 
-/// For the branches from `from` on, but not `to`.
+/// Remembers `found` for the branches from `from` on, up to `to`.
 void ContextMatcher::remember(std::uint32_t item, std::uint32_t from, std::uint32_t to, std::uint32_t found) {
     if (known_.size() > most_known) forget();
     for (std::uint32_t passed = from; passed != to; passed = links_.next_branch(passed)) {

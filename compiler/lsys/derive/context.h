@@ -35,7 +35,7 @@ class ContextLinks {
     /// The `[` of the first branch between a module and the one after it. For a `[`, of the first in its
     /// branch.
     std::uint32_t branch(std::uint32_t position) const { return branch_[position]; }
-    /// From one of these branches to the next, by their `[`.
+    /// The `[` of the branch beside the one that begins here.
     std::uint32_t next_branch(std::uint32_t position) const { return next_branch_[position]; }
 
   private:

@@ -20,8 +20,8 @@ namespace graftal {
 /// Words are never longer: their positions are numbered with 32 bits.
 inline constexpr std::uint64_t max_word_modules = 4'000'000'000;
 
-/// Whether so many that are kept are too many, of those that there are, for sharing to pay: an instance of a
-/// shared object takes about as much as three parts of a run, and time to find.
+/// Whether `kept` are too many of `all` for sharing to pay: an instance of a shared object takes about as
+/// much as three parts of a run, and time to find.
 inline bool little_repeats(std::uint64_t kept, std::uint64_t all) {
     return kept > all / 8;
 }
@@ -45,9 +45,8 @@ class LsysDeriver {
     /// Sets the stage that gets the words between the steps.
     void after_each_step(LsysStage stage) { stage_ = std::move(stage); }
 
-    /// From now on derive() gives up, without an error, where the modules of all words are too different from
-    /// each other for looking them up to pay: LsysStream does without. `fewest`: modules that it takes to
-    /// tell.
+    /// From now on derive() gives up, without an error, where looking modules up does not pay: too few in
+    /// all words are equal, and LsysStream does without. `fewest`: modules that it takes to tell.
     void give_up_where_little_repeats(std::uint64_t fewest) { gives_up_from_ = fewest; }
     bool gave_up() const { return gave_up_; }
 

@@ -12,9 +12,9 @@
 namespace graftal {
 
 /// A derived word in pieces, each kept once however often it occurs: the branches, and long strings cut into
-/// runs, runs of runs and so on, at places that depend on the modules near by, so that equal strings are cut
-/// alike. What is done for a piece can so be done once: of regular models some hundred pieces make up a word
-/// of millions of modules. The number of a piece stands in strings like a module.
+/// runs, runs of runs and so on. The modules near by choose the cuts, so that equal strings are cut alike.
+/// Work on a piece is so done once: of regular models some hundred pieces make up a word of millions of
+/// modules. The number of a piece stands in strings like a module.
 class FoldedWord {
   public:
     /// Requires balanced brackets. A word whose polygons cross branches is one piece. O(word), in its place.

@@ -16,10 +16,10 @@
 namespace graftal {
 
 /// Derives words strictly from left to right, for grammars whose productions change variables or ask chance
-/// where it counts in which order they are tried (LsysGrammar::in_order). As in cpfg, the first block of a
-/// production is carried out whenever the production is tried, and a successor is decomposed as soon as it is
-/// made. Nothing is kept of what became of equal modules. What chance gives depends on the seed, the step and
-/// how often it was asked in that step.
+/// in an order that counts (LsysGrammar::in_order). The first block of a production is carried out whenever
+/// the production is tried, as in cpfg. A successor is decomposed as soon as it is made. Nothing is kept of
+/// what became of equal modules. Chance depends on the seed, the step and how often it was asked in that
+/// step.
 class LsysOrderedDeriver {
   public:
     /// Both must outlive this. Requires max_modules <= max_word_modules.

@@ -17,9 +17,9 @@ TurtleContext turtle_context(const LsysGrammar& grammar, TurtleBodies& bodies, D
 /// The state of the turtle at the start, except for its width.
 TurtleState turtle_start(const LsysGrammar& grammar);
 
-/// Answers the queries of a word before the next step is derived: a turtle walks along the word, as it is
-/// interpreted, and puts its place or direction, or what the environment says, into the parameters of the
-/// queries that it meets (Prusinkiewicz, James and Mech 1994, "Synthetic topiary", section 3).
+/// Answers the queries of a word before the next step is derived. A turtle walks along the word, as it is
+/// interpreted, and meets queries. It puts its place or direction, or what the environment says, into their
+/// parameters (Prusinkiewicz, James and Mech 1994, "Synthetic topiary", section 3).
 class LsysQueries {
   public:
     /// Both must outlive this. `seed`: of what chance decides.

@@ -44,7 +44,7 @@ std::optional<ModuleString> LsysRewriter::axiom() {
 
 bool LsysRewriter::prepare(unsigned steps) {
     if (grammar_.first_cells.empty() || grammar_.in_order || variables_.recorded() == steps) return !failed_;
-    timed_.clear(); // that of the last step was drawn
+    timed_.clear(); // entries of the last step were drawn
     timed_ids_.clear();
     failed_ = failed_ || !variables_.record(steps);
     return !failed_;

@@ -46,9 +46,9 @@ inline Moment moment_of(std::uint32_t step, std::uint32_t birth) {
             birth == ModuleTable::no_birth ? 0.0 : static_cast<double>(step - birth)};
 }
 
-/// The random numbers of a rule are drawn together, as one of so many sets: for each call the values are
-/// spread evenly over the distribution (a Latin hypercube), so that the mean and the variance over the sets
-/// are those of the distribution. A power of two.
+/// Number of sets that a rule's random numbers are drawn in, all of a set together. For each call the values
+/// are spread evenly over the distribution (a Latin hypercube): mean and variance over the sets are those of
+/// the distribution. A power of two.
 inline constexpr std::uint32_t draw_sets = 64;
 
 /// The result of trying a rule on a module.
@@ -89,8 +89,8 @@ class LsysRewriter {
     /// The seconds of work that are left.
     double work_left() const { return meter_ ? meter_->left() : StageWork::unlimited; }
 
-    /// Readies the variables for a derivation of so many steps; to be called before anything else is. False
-    /// after an error. O(1) where there are none.
+    /// Readies the variables for a derivation of this many steps; to be called before anything else is.
+    /// False after an error. O(1) where there are none.
     bool prepare(unsigned steps);
     LsysVariables& variables() { return variables_; }
     /// Where the word is derived in order, from now on until it is null: where chance is drawn anew. Then
@@ -117,8 +117,8 @@ class LsysRewriter {
     /// not what they are drawn as. `no_birth`: no longer.
     void set_birth(std::uint32_t step) { birth_ = step; }
 
-    /// Whether the rule's condition holds for the values of its variables, those of contexts included.
-    /// Nothing after an error, or if it is false.
+    /// Whether the rule's condition holds for the values of its variables, those of contexts included. False
+    /// after an error.
     bool condition_holds(const LsysRule& rule, std::span<const double> values, const Moment& moment);
     /// The steps of applying a rule, for callers that keep its slots. `slots` has the values of its
     /// variables, from `first` on and last, and gets what else the rule's condition knows. Once applied, it
@@ -178,7 +178,7 @@ class LsysRewriter {
     struct Timed {
         RuleKind kind;
         ModuleId module;
-        Moment moment; ///< what is not read is 0
+        Moment moment; ///< members that are not read are 0
         std::uint32_t found;
     };
 

@@ -84,7 +84,7 @@ bool LsysStream::read_module(Frame& frame, Module& module) {
     return true;
 }
 
-/// A module of the word after so many steps.
+/// Meets a module of the word after `word` steps.
 bool LsysStream::meet(const Module& module, std::uint32_t word) {
     if (grammar_.has_rules(RuleKind::produce, module.symbol)) {
         const bool waits = grammar_.time(RuleKind::produce, module.symbol) != 0;
@@ -93,7 +93,7 @@ bool LsysStream::meet(const Module& module, std::uint32_t word) {
             const std::uint64_t draw = chooses_ ? random_.sequence(word + 1)(in_word_[word]) : 0;
             Chosen chosen;
             if (!choose(RuleKind::produce, module, moment, draw, chosen)) return false;
-            if (!chosen.rule && !waits) break; // what none fits now, none will fit later
+            if (!chosen.rule && !waits) break; // a module that none fits now, none will fit later
             if (++in_word_[word] > options_.max_modules)
                 return refuse_length(grammar_, options_.max_modules, word, diagnostics_);
             if (!chosen.rule) continue;

@@ -14,10 +14,9 @@
 namespace graftal {
 
 /// Derives and draws in one go, module by module, for words in which little repeats: no module is looked up,
-/// no word is kept. A module is replaced down to the last step before the next one is looked at, so that what
-/// is kept is one string a step. What a module becomes by chance depends on the seed, the step and its place
-/// in the word of that step, as in LsysDeriver: the word is the same, except for the rounding of its
-/// parameters (NumberTable).
+/// no word is kept. A module is replaced down to the last step before the next one is looked at: one string
+/// a step is kept. Chance for a module depends on the seed, the step and its place in the word of that step,
+/// as in LsysDeriver. The word is the same, except for the rounding of its parameters (NumberTable).
 class LsysStream {
   public:
     struct Options {
@@ -99,7 +98,7 @@ class LsysStream {
     const ModelPlacer& models_;
     Diagnostics& diagnostics_;
     Options options_;
-    Turtle* turtle_ = nullptr; ///< that draws; null: none does
+    Turtle* turtle_ = nullptr; ///< draws; null: nobody draws
     CounterRandom random_;
     bool chooses_ = false; ///< by chance, in steps
     std::vector<Frame> frames_;

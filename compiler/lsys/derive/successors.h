@@ -59,7 +59,7 @@ class LsysSuccessors {
     void begin_step(std::uint32_t step);
 
   private:
-    /// With probabilities added up, so that the first with draw <= upto is chosen.
+    /// A choice of chance: the first with draw <= upto, as probabilities are added up.
     struct Choice {
         std::uint64_t upto;
         RunId run;
@@ -116,7 +116,7 @@ class LsysSuccessors {
     Diagnostics& diagnostics_;
     bool sees_word_ = false;
     bool is_stochastic_ = false;
-    bool is_timed_ = false; ///< what a module becomes depends on the step
+    bool is_timed_ = false; ///< rewriting depends on the step
     std::uint32_t step_ = 0;
     std::vector<Contexts> contexts_; ///< of the symbols
 

@@ -11,7 +11,7 @@
 
 namespace graftal {
 
-/// The variables of a derivation may have so many values in all its steps.
+/// Most values that the variables of a derivation may have in all its steps.
 inline constexpr std::uint64_t max_recorded_cells = 16'000'000;
 
 /// The values of a block's variables in the course of a derivation. Where only the blocks of steps change
@@ -52,7 +52,7 @@ class LsysVariables {
     std::vector<double> now_;
     std::vector<double> slots_;
     std::optional<unsigned> recorded_;
-    std::vector<std::vector<double>> rows_;     ///< that differ
+    std::vector<std::vector<double>> rows_;     ///< different rows
     std::vector<std::uint32_t> during_, after_; ///< by step, in rows_
 };
 

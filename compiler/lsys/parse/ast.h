@@ -19,7 +19,7 @@ namespace graftal {
 /// More modules than this in the strings, predecessors, contexts and lists of one file are refused while
 /// parsing.
 inline constexpr std::size_t max_lsys_modules = 100'000;
-/// More words than this in their parameters, conditions and probabilities are refused likewise.
+/// More words than this in the parameters, conditions and probabilities of one file are refused.
 inline constexpr std::size_t max_lsys_words = 4'000'000;
 /// Brackets and braces of a string nest at most this deep.
 inline constexpr std::size_t max_lsys_nesting = 256;

@@ -275,7 +275,7 @@ class BlockParser {
         return false;
     }
 
-    /// Three numbers; four say at which angle.
+    /// Parses a direction of three numbers, and a fourth for the angle with it.
     void parse_tropism(const LsysStatement& statement) {
         TokenStream stream = values(statement);
         const bool twists = statement.word == "torque";
@@ -423,7 +423,7 @@ class BlockParser {
         }
     }
 
-    /// All of them. Of two words for one section the first is enough.
+    /// All faults. The first of two words for one section is enough.
     static std::string statement_choices(std::string_view word, std::string_view meant) {
         std::vector<std::string> words = lsys_keywords();
         std::erase_if(words, [&](const std::string& known) {

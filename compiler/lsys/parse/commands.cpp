@@ -84,7 +84,7 @@ class CommandParser {
         return false;
     }
 
-    /// At the end of the line, before a ';' or before the '}'.
+    /// Ends a statement at the end of the line, at a ';' or before the '}'.
     bool end_statement() {
         if (stream_.accept(";") || stream_.at("}") || stream_.at_end() || stream_.peek().first_on_line)
             return true;

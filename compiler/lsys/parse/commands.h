@@ -15,7 +15,7 @@ std::optional<LsysCommands> parse_lsys_commands(TokenStream& stream);
 /// `NAME = number, NAME = number, ...`, added to `variables`. False after an error; what lost its value is
 /// then there without one, so that nothing more is said about its name.
 bool parse_lsys_variables(TokenStream& stream, std::vector<LsysVariable>& variables);
-/// `NAME[size] = number, ...` or `NAME[size][size]`, with values or without, added to `variables` likewise.
+/// `NAME[size] = number, ...` or `NAME[size][size]`, added to `variables`; values may be missing.
 bool parse_lsys_array(TokenStream& stream, std::vector<LsysVariable>& variables);
 
 /// Calls `visit(expression)` for all expressions of commands, those of commands inside included.

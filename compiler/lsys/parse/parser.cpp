@@ -36,7 +36,7 @@ void skip_unknown(TokenStream& stream, const ForeignWords& foreign, bool report)
     } while (!stream.at_end() && !stream.peek().first_on_line);
 }
 
-/// Statements before, between and after the blocks. `lost_braces`: of so many '}' the '{' was not understood.
+/// Parses the statements around the blocks. `lost_braces`: number of '}' whose '{' was not understood.
 void parse_outside(TokenStream stream, const ForeignWords& foreign, LsysFile& file, std::size_t lost_braces) {
     stream.set_words(lsys_file_keywords, {});
     stream.drop_semicolons();

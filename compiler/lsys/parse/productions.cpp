@@ -329,7 +329,7 @@ class ProductionParser {
         return false;
     }
 
-    /// In place of the predecessor the successor must keep any word balanced.
+    /// The successor must keep any word balanced in place of the predecessor.
     bool check_brackets() {
         const LsysBrackets now = unmatched_brackets(production_.successor.modules);
         if (now.closed <= brackets_.closed && now.open + brackets_.closed == brackets_.open + now.closed)

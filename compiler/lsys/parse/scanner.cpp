@@ -70,9 +70,9 @@ std::string_view lsys_name(std::string_view text) {
     return text.substr(0, static_cast<std::size_t>(end - text.begin()));
 }
 
-/// Where a statement ends: with its line, unless a bracket is open, or the line ends with the arrow, or,
-/// among values, with a comma. A line that begins with a statement's word, or has an arrow after another line
-/// had one, does not go on with a statement, so that a bracket left open spoils one statement only.
+/// The end of a statement: that of its line, unless a bracket is open, or the line ends with the arrow, or,
+/// among values, with a comma. A line does not go on with a statement if it begins with a statement's word,
+/// or has an arrow after another line had one. So a bracket left open spoils one statement only.
 class LsysStatementEnd {
   public:
     /// `closes_before`: a '}' that nothing opened ends the statement if it stands before this place.
@@ -204,7 +204,7 @@ class LsysStatementEnd {
     bool values_;
     bool production_;
     bool blocks_;      ///< a statement that is a word and a block
-    bool lists_names_; ///< which may be those of statements
+    bool lists_names_; ///< names, which may be those of statements
     char last_ = '\0'; ///< before this place, of those that count
     bool colon_ = false;
     bool arrow_ = false;
@@ -299,13 +299,13 @@ std::optional<LsysHeader> LsysScanner::find_block(std::size_t place) const {
     return std::nullopt;
 }
 
-/// In a comment or not: enough to tell that a line is a production of its own.
+/// Whether the line has an arrow, in a comment or not: enough to tell that it is a production of its own.
 bool LsysScanner::has_arrow(std::size_t place) const {
     const std::string_view line = text_.substr(place, line_end(place) - place);
     return line.substr(0, line.find('#')).find("->") != std::string_view::npos;
 }
 
-/// Past the '{' after `interpret`, or nothing if a production follows.
+/// The place behind the '{' after `interpret`, or 0 if a production follows.
 std::size_t LsysScanner::enter_section(std::size_t place) const {
     place = skip_blanks(place);
     if (at(place) == ':') place = skip_blanks(place + 1);
@@ -341,7 +341,7 @@ LsysOutline LsysScanner::outline(std::size_t begin) const {
         }
         place = LsysStatementEnd(*this, place, statement.word, closes_before).find();
         statement.end = place;
-        if (at(place) == ';') ++place; // that another statement follows
+        if (at(place) == ';') ++place; // a sign that another statement follows
         result.statements.push_back(statement);
     }
     result.end = place;

@@ -41,7 +41,7 @@ struct LsysText {
     bool stray_brace_said = false; ///< a '}' that may have been meant to close the block was reported
     std::size_t lost_braces = 0;   ///< '{' of statements that are none, whose '}' is left over
 
-    /// At the end of a block: reports polygons that never end, or that never began.
+    /// Reports, at the end of a block, polygons that never end, or that never began.
     void check_polygons();
     /// Tokens of a part of the file; `end_name` is what messages call their end.
     TokenStream tokens(std::size_t begin, std::size_t end, std::string_view end_name);
@@ -51,8 +51,7 @@ struct LsysText {
 
 inline constexpr std::string_view lsys_line_end = "the end of the line";
 
-/// Reads the module strings of one statement, from left to right. What is wrong is reported, and reading goes
-/// on where it can.
+/// Reads the module strings of one statement, from left to right. Reports faults, and goes on where it can.
 class LsysStringReader {
   public:
     /// Reads between two places of the file.
@@ -62,14 +61,14 @@ class LsysStringReader {
     /// Modules up to '<', '>', ':', '*', an arrow or the end. The readers return false after an error.
     /// `balanced`: square brackets that do not match are an error.
     bool read_modules(std::vector<LsysModule>& modules, bool balanced = true);
-    /// Modules with names for parameters, as far as read_modules() reads.
+    /// Reads modules with names for parameters, as far as read_modules() reads.
     bool read_formals(std::vector<LsysFormal>& modules);
-    /// Modules without parameters, for `ignore` and `consider`.
+    /// Reads modules without parameters, for `ignore` and `consider`.
     bool read_symbols(std::vector<Name>& symbols);
     /// An expression that goes on to `end`.
     std::optional<Expression> read_expression(std::size_t end, std::string_view end_name);
 
-    /// Past blanks and comments; the place of the next character that counts.
+    /// The place of the next character that counts, past blanks and comments.
     std::size_t position();
     bool at_end() { return position() >= end_; }
     std::size_t at_arrow();

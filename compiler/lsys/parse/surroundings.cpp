@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t most_sources = 100;
 
-/// What a statement of the environment says, and how many numbers it takes.
+/// A statement of the environment, and the range of how many numbers it takes.
 struct EnvironmentForm {
     std::string_view kind;
     std::size_t least, most;

@@ -21,7 +21,7 @@ struct BodySink {
     bool open_width = false;
 };
 
-/// In RunItem::colour, until widen() has been called.
+/// The mark in RunItem::colour of bodies of open width, until widen() has been called.
 inline constexpr std::uint16_t open_width = 1u << 15;
 
 /// Makes what is marked by open_width thicker by a factor, and takes the marks away.
@@ -71,7 +71,7 @@ class TurtleBodies {
     Graph& graph_;
     std::vector<Material> palette_;                      ///< not empty
     std::vector<std::optional<MaterialId>> ids_;         ///< of the palette's materials used so far
-    std::unordered_map<Primitive, ObjectId> primitives_; ///< those used so far
+    std::unordered_map<Primitive, ObjectId> primitives_; ///< primitives used so far
 };
 
 } // namespace graftal

@@ -22,7 +22,7 @@ double Turtle::sense() {
     return state_.turns_reversed ? -1 : 1;
 }
 
-/// With a parameter, so that turns are reversed where it is not 0; without, the other way than before.
+/// Reverses turns if the parameter is not 0, else not; without one, the other way than before.
 void Turtle::reverse_turns(std::span<const double> parameters) {
     if (parameters.empty()) note(reads_reversal);
     state_.turns_reversed = parameters.empty() ? !state_.turns_reversed : parameters[0] != 0;
@@ -147,7 +147,7 @@ bool Turtle::set_tropism(std::span<const double> parameters, Span span) {
         writes_ |= reads_elasticity;
         return true;
     }
-    note(reads_tropisms); // those that stay
+    note(reads_tropisms); // tropisms that stay
     writes_ |= reads_tropisms;
     TurtleFrame frame = *state_.frame;
     frame.tropisms[static_cast<std::size_t>(number) - 2].elasticity = elasticity;

@@ -67,7 +67,7 @@ double LengthTally::median() const {
     for (const Bin& bin : bins_)
         all += std::exp(log_weight(bin) - most);
     double sum = 0;
-    constexpr double rounding = 1e-9; // so that the order of the lengths does not decide a tie
+    constexpr double rounding = 1e-9; // keeps the order of the lengths from deciding a tie
     for (const Bin& bin : bins_) {
         sum += std::exp(log_weight(bin) - most);
         if (sum >= all / 2 * (1 - rounding)) return bin.longest;

@@ -30,14 +30,14 @@ struct TurtleState {
     std::uint32_t variant = 0; ///< of what is random (compose/composer.h)
     std::uint32_t birth = 0;   ///< the step in which the module came into being
     double unit = 1;           ///< how long a length of 1 is that the model writes (compose/composer.h)
-    double ruler = 1;          ///< the same of one that does not go with the step, where the step varies
+    double ruler = 1;          ///< length of 1 that does not go with the step, where the step varies
     bool turns_reversed = false;
     double angle_factor = 1;                  ///< of turns without a parameter
     Quat second = Quat(1, 0, 0, 0);           ///< the second axes, from those of the turtle
     std::shared_ptr<const TurtleFrame> frame; ///< the world; null where no symbol asks for it
 };
 
-/// Branches of branches become finer so many times: after these they are too fine for one to see a
+/// Number of times that branches of branches become finer: after these they are too fine for one to see a
 /// difference, and parts of a long derivation would come in too many widths.
 inline constexpr std::uint8_t most_tapers = 12;
 

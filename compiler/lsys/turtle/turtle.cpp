@@ -323,7 +323,7 @@ void Turtle::set_colour(std::span<const double> parameters, int step) {
     writes_ |= reads_colour;
 }
 
-/// With the rest of the branch go the ends of the polygons begun in it, and so the polygons.
+/// Cuts the rest of the branch, with the ends of the polygons begun in it, and so these polygons.
 void Turtle::cut() {
     cut_depth_ = 1;
     const std::size_t before = branches_.empty() ? 0 : branches_.back().polygons;
@@ -391,7 +391,7 @@ void Turtle::start_cylinder() {
     writes_ |= reads_cylinder | reads_control;
 }
 
-/// Also of the end: draws the piece of the cylinder that reaches to here.
+/// Adds a control point, or the end: draws the piece of the cylinder that reaches to here.
 void Turtle::add_control_point(Span span) {
     note(reads_cylinder);
     if (!state_.in_cylinder) return;

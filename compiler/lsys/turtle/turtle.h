@@ -28,7 +28,7 @@ struct Displacement {
 /// Where a width comes from, and so what it is off by if that is off.
 enum class WidthSource : std::uint8_t {
     start, ///< the width that came in
-    unit,  ///< the text: so many units
+    unit,  ///< the text, in units
     sizes, ///< parameters that are sizes
 };
 
@@ -49,14 +49,14 @@ struct TurtlePart {
     TurtleState exit;                        ///< the members of `writes` only
     TurtleStateMask reads = 0;               ///< before they were written
     TurtleStateMask writes = 0;
-    bool cut = false;        ///< what follows in the branch is cut off
+    bool cut = false;        ///< the rest of the branch is cut off
     double reach = 0;        ///< the turtle goes no farther from the start
     double longest_way = 0;  ///< nor is any way that it goes longer
     double exit_way = 0;     ///< how long the way to the exit is
     Displacement error;      ///< from directions that were snapped and sizes that were rounded (LsysComposer)
     Displacement size_error; ///< the sizes' share in it; its turn is 0
     Displacement sensitivity; ///< to the directions at the start, per radian, to first order
-    /// To the width that came in, and to the unit, by the logarithms of these (LsysComposer).
+    /// Sensitivities to the width that came in, and to the unit, by their logarithms (LsysComposer).
     double width_sensitivity = 0;  ///< of any point
     Displacement unit_sensitivity; ///< its turn is 0
     double thickest = 0;           ///< the largest radius that is drawn
@@ -124,8 +124,8 @@ class Turtle {
     /// round bodies that run() draws, in place of the part's instances.
     Turtle(TurtleContext& context, const TurtleState& start, Run* run = nullptr);
 
-    /// Carries out one module; false after an error. What `~` places is given by `model`. `absolute`: the
-    /// parameter is a size in units.
+    /// Carries out one module; false after an error. `model` is what `~` places. `absolute`: the parameter
+    /// is a size in units.
     bool run(TurtleCommand command, std::span<const double> parameters,
              const std::optional<PlacedModel>& model, Span span, bool absolute = false);
 

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -108,6 +109,26 @@ std::vector<std::string> faulty_subjects(const std::string& page) {
     return faults;
 }
 
+/// Comments of a source that begin with no noun: "What lies here", "Of a file", "As above".
+std::vector<std::string> faulty_comments(const std::string& source) {
+    static const std::regex beginning(R"(//[/!]?<?\s+((What|Of|As|By|That|Those|The same)\b.*))");
+    std::vector<std::string> faults;
+    std::istringstream lines(source);
+    std::string line;
+    std::size_t column_before = std::string::npos; // of the comment of the line before
+    for (int number = 1; std::getline(lines, line); ++number) {
+        const std::size_t column = line.find("//");
+        const bool goes_on = column == column_before && line.find_first_not_of(' ') == column;
+        column_before = column;
+        if (column == std::string::npos || goes_on) continue;
+        const std::string comment = line.substr(column);
+        std::smatch found;
+        if (std::regex_match(comment, found, beginning))
+            faults.push_back(fmt::format("line {}: begin with a noun: \"{}\"", number, found[1].str()));
+    }
+    return faults;
+}
+
 const fs::path root = GRAFTAL_SOURCE_DIR;
 
 std::vector<fs::path> files_in(const std::vector<std::string>& folders,
@@ -141,6 +162,14 @@ TEST(PlainEnglish, SubjectsOfPagesHaveNames) {
             ADD_FAILURE() << file.lexically_relative(root).string() << ": " << fault;
 }
 
+TEST(PlainEnglish, CommentsBeginWithTheirNoun) {
+    const std::vector<fs::path> files = files_in({"compiler", "runtime", "tools"}, {".h", ".cpp"});
+    EXPECT_GT(files.size(), 500u);
+    for (const fs::path& file : files)
+        for (const std::string& fault : faulty_comments(text_of(file)))
+            ADD_FAILURE() << file.lexically_relative(root).string() << ": " << fault;
+}
+
 TEST(PlainEnglish, TheTestFindsFaults) {
     EXPECT_EQ(faults_of("All are left,\n    /// but for\n    /// one.\n").size(), 1u);
     EXPECT_EQ(faults_of("// one\n\"all but \"\n    \"for one\"").front(),
@@ -152,6 +181,12 @@ TEST(PlainEnglish, TheTestFindsFaults) {
     EXPECT_EQ(faulty_subjects("- What is large\nis cut: it goes.\n").size(), 1u);
     EXPECT_EQ(faulty_subjects("What is it? It says what is there.\n").size(), 0u);
     EXPECT_EQ(faulty_subjects("## What is compared\n\n| What is there |").size(), 0u);
+    EXPECT_EQ(faulty_comments("int a;\n/// Of a file.\nint b; ///< The same\n").size(), 2u);
+    EXPECT_EQ(faulty_comments("int a; // a\n// What it is.\n").front(),
+              "line 2: begin with a noun: \"What it is.\"");
+    EXPECT_EQ(faulty_comments("int a; ///< The name,\n       ///< As it is.\n").size(), 0u) << "a block";
+    EXPECT_EQ(faulty_comments("/// The text.\n///\n/// By rows.\nWhat a;\n").size(), 0u) << "a block";
+    EXPECT_EQ(faulty_comments("// Assets. What?\n// The sameness\n").size(), 0u);
 }
 
 } // namespace

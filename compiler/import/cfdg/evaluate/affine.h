@@ -22,7 +22,7 @@ std::vector<const Adjustment*> moves_of(const Modification& modification);
 /// The size of what a map draws, as Context Free measures it: the root of the area of a square of 1.
 double size_of(const Affine& map);
 
-/// Their map, where all numbers are known. z is scaled by the geometric mean of x and y.
+/// The map of a modification where all numbers are known. z is scaled by the geometric mean of x and y.
 std::optional<Affine> affine_of(const Modification& modification, const Expressions& expressions,
                                 const Numbers& known = {});
 

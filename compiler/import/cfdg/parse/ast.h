@@ -120,7 +120,7 @@ struct Grammar {
     std::vector<Definition> definitions;
     std::set<std::string> defined;         ///< their names
     std::optional<Element> start;          ///< startshape
-    std::optional<Element> included_start; ///< that of an included file, where this one has none
+    std::optional<Element> included_start; ///< startshape of an included file, where this one has none
     std::optional<Modification> background, size, tile;
     std::vector<std::string> tail; ///< comments
 

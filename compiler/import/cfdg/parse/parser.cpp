@@ -138,7 +138,7 @@ class Parser : private Phrases {
         return parse_definition(std::move(definition), included);
     }
 
-    /// Behind its name.
+    /// Parses a definition behind its name.
     bool parse_definition(Definition definition, bool included) {
         if (accept("(")) {
             definition.is_function = true;

@@ -15,7 +15,7 @@ struct Token {
     double number = 0;
     bool percent = false;
     Span span;
-    std::vector<std::string> comments; ///< that stand before it
+    std::vector<std::string> comments; ///< comments before it
 
     bool is(std::string_view other) const {
         return (kind == TokenKind::word || kind == TokenKind::sign) && text == other;

@@ -14,7 +14,7 @@ struct FlagRow {
     PathFlag flag;
     std::string_view name;       ///< of version 3, behind "CF::"
     std::string_view word;       ///< of version 2; "" where it has none
-    std::string_view operations; ///< those that take it begin so
+    std::string_view operations; ///< beginnings of operations that take it
 };
 
 constexpr std::array<FlagRow, 12> rows = {{{PathFlag::align, "Align", "align", "CLOSEPOLY"},

@@ -51,7 +51,7 @@ class PathFlags {
 /// Whether a line of version 2 may have the adjustment: `rx` of ARCTO, `width` of STROKE.
 bool takes_word(std::string_view operation, std::string_view word);
 
-/// Whether the operation may have so many numbers.
+/// Whether the operation may have this many numbers.
 bool takes_numbers(std::string_view operation, std::size_t count, const PathFlags& flags);
 
 } // namespace graftal::cfdg

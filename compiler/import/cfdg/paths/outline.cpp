@@ -308,7 +308,7 @@ class Pen {
     }
 
     std::vector<Outline> parts;
-    std::vector<Outline> ribbons; ///< the same as rings, where the pen does not cross its own way
+    std::vector<Outline> ribbons; ///< parts as rings, where the pen does not cross its own way
 
   private:
     /// Both banks of the way: one ring of an open outline, two of a closed one.

@@ -71,7 +71,7 @@ void CpfgVariables::take_start(const CpfgNames& names, const CpfgBlock& start,
                                const std::set<std::string>& changed) {
     std::set<std::string> let_names = names.lets(), said;
     CpfgBlock rest;
-    bool constant = true; // so far nothing was left for the block
+    bool constant = true; // nothing was left for the block yet
     for (const CpfgAction& action : start) {
         const bool known =
             constant && action.kind == CpfgAction::Kind::assign && action.target == action.name &&

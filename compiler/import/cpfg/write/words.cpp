@@ -123,8 +123,8 @@ std::string CpfgWords::stand_ins(Span span) {
     return text;
 }
 
-/// `other_arity`: with so many parameters that no production of the homomorphism is for it. The turtle passes
-/// over parameters beyond those that it needs.
+/// `other_arity`: no production of the homomorphism is for this number of parameters. The turtle passes over
+/// parameters beyond those that it needs.
 std::string CpfgWords::parameters(const CpfgModule& module, Span span, bool other_arity) {
     std::string text;
     for (const std::string& parameter : module.parameters)
@@ -176,7 +176,7 @@ std::string CpfgWords::own_text_of(const CpfgModule& module, Span span, bool oth
 }
 
 std::string CpfgWords::colour_step(const CpfgModule& module) const {
-    constexpr int colours = 8; // of our list: so many steps lead back
+    constexpr int colours = 8; // of our list: as many steps lead back
     const int step = names_.view().colour_increment;
     const int times = (step % colours + colours) % colours;
     return std::string(static_cast<std::size_t>(times), module.symbol[0]);

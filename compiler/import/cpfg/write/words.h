@@ -62,10 +62,10 @@ class CpfgWords {
 
     CpfgNames& names_;
     const CpfgSystem& system_;
-    using WithParameters = std::set<std::pair<std::string, std::size_t>>; ///< symbols with so many parameters
+    using WithParameters = std::set<std::pair<std::string, std::size_t>>; ///< symbols, numbers of parameters
     std::set<std::string> mentioned_; ///< symbols that productions look at
     std::set<std::string> rewritten_; ///< symbols that begin a predecessor
-    WithParameters drawn_otherwise_;  ///< what the homomorphism draws as something else
+    WithParameters drawn_otherwise_;  ///< symbols drawn by the homomorphism
     WithParameters stand_ins_;
     std::set<std::string> declared_;
     std::set<char> used_surfaces_;

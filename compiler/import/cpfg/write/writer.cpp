@@ -92,7 +92,7 @@ class SystemWriter {
         }
     }
 
-    /// From the axiom to the end. What it uses is then known.
+    /// Writes the body, from the axiom to the end; the names that it uses are then known.
     Translation write_body() {
         Translation body{"lsys", {}, {}};
         const std::string axiom = words_.text_of(system_.axiom, system_.axiom_span);

@@ -7,7 +7,7 @@
 
 namespace graftal {
 
-/// The system as a model of ours, with the environment that a file describes ("": none). Of no use after an
+/// The system as a model of ours, with the environment that a file describes ("": none). Useless after an
 /// error.
 Translation write_cpfg_system(CpfgNames& names, CpfgSystem system, const ForeignModel& model,
                               const std::string& environment);

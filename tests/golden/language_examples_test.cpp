@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/languages/lower.h"
+#include "runtime/system/disk_files.h"
 #include "runtime/system/file.h"
 
 namespace graftal {
@@ -51,7 +52,7 @@ void compile_examples(const std::string& language, std::size_t at_least) {
             // Beside the models that examples use.
             const std::string name = (root / "scenes/ifs/example.").string() + language;
             const std::optional<Graph> graph =
-                lower_text(name, example.text, options, sources, diagnostics).graph;
+                lower_text(name, example.text, options, sources, diagnostics, {.files = &disk_files()}).graph;
             EXPECT_TRUE(graph) << "docs/language.md:" << example.line;
             EXPECT_EQ(diagnostics.render(sources), "") << "docs/language.md:" << example.line;
         }

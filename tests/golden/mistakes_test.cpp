@@ -20,6 +20,7 @@
 
 #include "compiler/languages/lower.h"
 #include "compiler/support/printable.h"
+#include "runtime/system/disk_files.h"
 #include "runtime/system/file.h"
 
 namespace graftal {
@@ -85,7 +86,7 @@ std::string said_about(const std::string& name, const std::string& text, std::si
     Diagnostics diagnostics;
     LowerOptions options;
     options.may_be_orbit = true;
-    static_cast<void>(lower_text(name, text, options, sources, diagnostics));
+    static_cast<void>(lower_text(name, text, options, sources, diagnostics, {.files = &disk_files()}));
     errors = diagnostics.error_count();
     const auto place = [&](Span span) -> std::string {
         if (!span.known()) return "";

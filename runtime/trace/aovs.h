@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/graph/cut_graph.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/ray.h"
 #include "runtime/trace/surfaces.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "compiler/analysis/bounding.h"
-#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/graph/cut_graph.h"
 #include "compiler/support/bounds.h"
 
 namespace graftal {

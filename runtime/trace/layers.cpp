@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "compiler/detail/run_cells.h"
+#include "compiler/detail/graph/run_cells.h"
 
 namespace graftal {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/graph/cut_graph.h"
 
 namespace graftal {
 

@@ -50,8 +50,8 @@ struct TraceMesh {
 /// Meets a triangle from either side, as intersect() of intersect.h does a primitive (triangle_ray.h).
 bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRange& range, PrimitiveHit& hit);
 
-/// Bakes the shells (detail/shell.h) of what rays would not come through, where they come to it, once for
-/// each half octave of sizes. Used by many threads.
+/// Bakes the shells (detail/shell/shell.h) of what rays would not come through, where they come to it, once
+/// for each half octave of sizes. Used by many threads.
 class MeshStore {
   public:
     /// Keeps a reference. `most_shell_work`: points moved for one shell; it gets coarser by that.

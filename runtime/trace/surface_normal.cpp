@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/detail/limit_normal.h"
+#include "compiler/detail/mesh/limit_normal.h"
 #include "compiler/support/stretch.h"
 
 namespace graftal {

@@ -10,9 +10,9 @@ namespace graftal {
 /// The normal of the image of a surface, of unit length.
 Vec3 transformed_normal(const LaneMap& map, Vec3 normal);
 
-/// The limit's normal (compiler/detail/limit_normal.h) in world space, where a ray meets the proxy of `node`
-/// at this point of the unit sphere. `path`: edges from the root to the node, those from cut nodes marked.
-/// Frame by frame upwards, so that no depth costs digits.
+/// The limit's normal (compiler/detail/mesh/limit_normal.h) in world space, where a ray meets the proxy of
+/// `node` at this point of the unit sphere. `path`: edges from the root to the node, those from cut nodes
+/// marked. Frame by frame upwards, so that no depth costs digits.
 Vec3 limit_normal(const TraceModel& model, std::span<const std::uint32_t> path, std::uint32_t node,
                   Vec3 point);
 

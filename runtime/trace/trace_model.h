@@ -7,12 +7,12 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/detail/ending.h"
+#include "compiler/detail/graph/ending.h"
+#include "compiler/detail/graph/run_cells.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/detail/projection.h"
-#include "compiler/detail/run_cells.h"
 #include "compiler/detail/self_shadow.h"
-#include "compiler/detail/shell_sizes.h"
+#include "compiler/detail/shell/sizes.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/ray.h"
 #include "runtime/image/texture.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/detail/alike_set.h"
+#include "compiler/detail/graph/alike_set.h"
 #include "compiler/detail/work.h"
 #include "compiler/primitives/intersect.h"
 #include "runtime/trace/surfaces.h"

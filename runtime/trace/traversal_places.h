@@ -61,8 +61,8 @@ struct Traversal::Places {
         return 2 * ball.radius * model.projection.detail_per_unit(ball);
     }
 
-    /// The rule of the cut (detail/piece_kind.h). `least_detail`: of a unit, anywhere in the node's ball.
-    /// Sets the detail if it has to look.
+    /// The rule of the cut (detail/graph/piece_kind.h). `least_detail`: of a unit, anywhere in the node's
+    /// ball. Sets the detail if it has to look.
     GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Place& frame, double least_detail,
                                double& detail) const {
         if (self.hurries_ && node.cullable) return true;

@@ -12,9 +12,9 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
+#include "compiler/detail/graph/run_cells.h"
 #include "compiler/detail/piece.h"
 #include "compiler/detail/prepare.h"
-#include "compiler/detail/run_cells.h"
 #include "compiler/passes/drop_unreachable.h"
 #include "compiler/scene/scene.h"
 #include "runtime/trace/traversal.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/detail/run_cells.h"
+#include "compiler/detail/graph/run_cells.h"
 #include "tests/unit/trace/models.h"
 
 namespace graftal {

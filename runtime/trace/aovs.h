@@ -7,7 +7,7 @@
 #include "compiler/detail/graph/cut_graph.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/ray.h"
-#include "runtime/trace/surfaces.h"
+#include "runtime/trace/shade/surfaces.h"
 
 namespace graftal {
 

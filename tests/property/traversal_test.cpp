@@ -17,7 +17,7 @@
 #include "compiler/detail/prepare.h"
 #include "compiler/passes/drop_unreachable.h"
 #include "compiler/scene/scene.h"
-#include "runtime/trace/traversal.h"
+#include "runtime/trace/traverse/traversal.h"
 #include "tests/property/random_graph.h"
 
 namespace graftal {

@@ -10,9 +10,9 @@
 #include <zlib.h>
 
 #include "compiler/support/number.h"
-#include "runtime/export/flat_files.h"
-#include "runtime/export/pbr.h"
-#include "runtime/export/renderer_scene.h"
+#include "runtime/export/formats/flat_files.h"
+#include "runtime/export/formats/pbr.h"
+#include "runtime/export/formats/renderer_scene.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "runtime/export/picture_copies.h"
+#include "runtime/export/formats/picture_copies.h"
 
 #include <filesystem>
 

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <map>
 
-#include "runtime/export/flat_files.h"
-#include "runtime/export/picture_copies.h"
+#include "runtime/export/formats/flat_files.h"
+#include "runtime/export/formats/picture_copies.h"
 
 namespace graftal {
 

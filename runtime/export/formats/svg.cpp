@@ -5,10 +5,10 @@
 #include <map>
 #include <numbers>
 
-#include "runtime/export/flat_files.h"
-#include "runtime/export/flat_shapes.h"
+#include "runtime/export/formats/flat_files.h"
+#include "runtime/export/formats/flat_shapes.h"
+#include "runtime/export/formats/plotter.h"
 #include "runtime/export/looks.h"
-#include "runtime/export/plotter.h"
 
 namespace graftal {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "runtime/export/plane_view.h"
+#include "runtime/export/formats/plane_view.h"
 
 namespace graftal {
 

@@ -1,6 +1,6 @@
 // PLY, binary: every triangle, colours by vertex.
 
-#include "runtime/export/flat_files.h"
+#include "runtime/export/formats/flat_files.h"
 
 namespace graftal {
 

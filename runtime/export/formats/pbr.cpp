@@ -1,4 +1,4 @@
-#include "runtime/export/pbr.h"
+#include "runtime/export/formats/pbr.h"
 
 #include <algorithm>
 #include <cmath>

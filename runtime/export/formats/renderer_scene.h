@@ -2,9 +2,9 @@
 
 // Scenes for renderers with one level of instances: a list of meshes, and where they lie.
 
-#include "runtime/export/group_mesh.h"
+#include "runtime/export/formats/group_mesh.h"
+#include "runtime/export/formats/picture_copies.h"
 #include "runtime/export/looks.h"
-#include "runtime/export/picture_copies.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "runtime/export/group_mesh.h"
+#include "runtime/export/formats/group_mesh.h"
 
 #include <map>
 #include <tuple>
@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "runtime/export/flat_files.h"
+#include "runtime/export/formats/flat_files.h"
 
 namespace graftal {
 

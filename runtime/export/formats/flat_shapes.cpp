@@ -1,4 +1,4 @@
-#include "runtime/export/flat_shapes.h"
+#include "runtime/export/formats/flat_shapes.h"
 
 #include <cmath>
 

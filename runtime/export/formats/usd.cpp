@@ -8,13 +8,13 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/support/number.h"
-#include "runtime/export/flat_files.h"
-#include "runtime/export/group_mesh.h"
+#include "runtime/export/formats/flat_files.h"
+#include "runtime/export/formats/group_mesh.h"
+#include "runtime/export/formats/pbr.h"
+#include "runtime/export/formats/picture_copies.h"
+#include "runtime/export/formats/rigid_parts.h"
 #include "runtime/export/levels.h"
 #include "runtime/export/looks.h"
-#include "runtime/export/pbr.h"
-#include "runtime/export/picture_copies.h"
-#include "runtime/export/rigid_parts.h"
 
 namespace graftal {
 

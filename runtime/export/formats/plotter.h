@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "runtime/export/plane_view.h"
+#include "runtime/export/formats/plane_view.h"
 
 namespace graftal {
 

@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/support/number.h"
-#include "runtime/export/flat_files.h"
-#include "runtime/export/pbr.h"
-#include "runtime/export/renderer_scene.h"
+#include "runtime/export/formats/flat_files.h"
+#include "runtime/export/formats/pbr.h"
+#include "runtime/export/formats/renderer_scene.h"
 
 namespace graftal {
 

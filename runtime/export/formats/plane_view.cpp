@@ -1,4 +1,4 @@
-#include "runtime/export/plane_view.h"
+#include "runtime/export/formats/plane_view.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runtime/export/flat_files.h"
+#include "runtime/export/formats/flat_files.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "runtime/export/rigid_parts.h"
+#include "runtime/export/formats/rigid_parts.h"
 
 #include <algorithm>
 #include <cmath>

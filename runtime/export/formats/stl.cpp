@@ -2,7 +2,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "runtime/export/flat_files.h"
+#include "runtime/export/formats/flat_files.h"
 
 namespace graftal {
 

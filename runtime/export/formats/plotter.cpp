@@ -1,4 +1,4 @@
-#include "runtime/export/plotter.h"
+#include "runtime/export/formats/plotter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runtime/export/renderer_scene.h"
+#include "runtime/export/formats/renderer_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "runtime/export/flat_files.h"
+#include "runtime/export/formats/flat_files.h"
 
 namespace graftal {
 

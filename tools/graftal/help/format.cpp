@@ -1,4 +1,4 @@
-#include "tools/graftal/help_format.h"
+#include "tools/graftal/help/format.h"
 
 #include <algorithm>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "tools/graftal/usage_errors.h"
+#include "tools/graftal/help/usage_errors.h"
 
 #include <algorithm>
 #include <vector>

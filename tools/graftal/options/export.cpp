@@ -1,11 +1,11 @@
-#include "tools/graftal/export_options.h"
+#include "tools/graftal/options/export.h"
 
 #include <algorithm>
 
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
-#include "tools/graftal/option_values.h"
-#include "tools/graftal/shared_options.h"
+#include "tools/graftal/options/shared.h"
+#include "tools/graftal/options/values.h"
 
 namespace graftal {
 

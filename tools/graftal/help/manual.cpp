@@ -1,4 +1,4 @@
-#include "tools/graftal/manual.h"
+#include "tools/graftal/help/manual.h"
 
 #include <algorithm>
 

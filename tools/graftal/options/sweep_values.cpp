@@ -1,11 +1,11 @@
-#include "tools/graftal/sweep_values.h"
+#include "tools/graftal/options/sweep_values.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "tools/graftal/option_values.h"
+#include "tools/graftal/options/values.h"
 
 namespace graftal {
 

@@ -22,8 +22,8 @@
 #include "runtime/system/made_folders.h"
 #include "runtime/system/process_memory.h"
 #include "tools/graftal/commands.h"
-#include "tools/graftal/farm_job.h"
-#include "tools/graftal/option_values.h"
+#include "tools/graftal/commands/farm_job.h"
+#include "tools/graftal/options/values.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
 

@@ -1,4 +1,4 @@
-#include "tools/graftal/documents.h"
+#include "tools/graftal/help/documents.h"
 
 #include <algorithm>
 
@@ -8,9 +8,9 @@
 
 #include "compiler/languages/languages.h"
 #include "runtime/render/render.h"
-#include "tools/graftal/completion.h"
-#include "tools/graftal/manual.h"
-#include "tools/graftal/usage_errors.h"
+#include "tools/graftal/help/completion.h"
+#include "tools/graftal/help/manual.h"
+#include "tools/graftal/help/usage_errors.h"
 
 namespace graftal {
 

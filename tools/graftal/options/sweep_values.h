@@ -11,7 +11,7 @@
 
 namespace graftal {
 
-// Values of `animate` besides option_values.h: they run from one to another, "A..B".
+// Values of `animate` besides values.h: they run from one to another, "A..B".
 
 /// The two sides of "A..B"; nothing where there is no "..".
 std::optional<std::pair<std::string, std::string>> parse_range(std::string_view text);

@@ -1,4 +1,4 @@
-#include "tools/graftal/option_values.h"
+#include "tools/graftal/options/values.h"
 
 #include <algorithm>
 #include <charconv>

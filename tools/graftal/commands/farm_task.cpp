@@ -15,7 +15,7 @@
 #include "runtime/system/memory_limit.h"
 #include "runtime/system/process_memory.h"
 #include "tools/graftal/commands.h"
-#include "tools/graftal/farm_job.h"
+#include "tools/graftal/commands/farm_job.h"
 #include "tools/graftal/report.h"
 
 namespace graftal {

@@ -1,4 +1,4 @@
-#include "tools/graftal/shared_options.h"
+#include "tools/graftal/options/shared.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,9 +9,9 @@
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/number_range.h"
 #include "compiler/support/printable.h"
-#include "tools/graftal/option_values.h"
-#include "tools/graftal/sweep_values.h"
-#include "tools/graftal/usage_errors.h"
+#include "tools/graftal/help/usage_errors.h"
+#include "tools/graftal/options/sweep_values.h"
+#include "tools/graftal/options/values.h"
 
 namespace graftal {
 

@@ -15,8 +15,8 @@
 #include "runtime/system/process.h"
 #include "runtime/system/worker_threads.h"
 #include "tools/graftal/commands.h"
-#include "tools/graftal/farm_job.h"
-#include "tools/graftal/option_values.h"
+#include "tools/graftal/commands/farm_job.h"
+#include "tools/graftal/options/values.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
 

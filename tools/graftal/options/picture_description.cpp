@@ -1,11 +1,11 @@
-#include "tools/graftal/picture_description.h"
+#include "tools/graftal/options/picture_description.h"
 
 #include <filesystem>
 #include <set>
 #include <vector>
 
 #include "compiler/support/printable.h"
-#include "tools/graftal/option_values.h"
+#include "tools/graftal/options/values.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "tools/graftal/farm_options.h"
+#include "tools/graftal/options/farm.h"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "runtime/farm/join_tiles.h"
-#include "tools/graftal/option_values.h"
 #include "tools/graftal/options.h"
-#include "tools/graftal/shared_options.h"
+#include "tools/graftal/options/shared.h"
+#include "tools/graftal/options/values.h"
 
 namespace graftal {
 

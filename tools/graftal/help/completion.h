@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/graftal/option_tree.h"
+#include "tools/graftal/help/option_tree.h"
 
 namespace graftal {
 

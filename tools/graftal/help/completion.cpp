@@ -1,4 +1,4 @@
-#include "tools/graftal/completion.h"
+#include "tools/graftal/help/completion.h"
 
 #include <algorithm>
 #include <array>

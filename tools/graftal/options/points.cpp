@@ -1,4 +1,4 @@
-#include "tools/graftal/points_options.h"
+#include "tools/graftal/options/points.h"
 
 #include <cmath>
 #include <filesystem>
@@ -10,8 +10,8 @@
 #include "compiler/support/number.h"
 #include "runtime/points/card.h"
 #include "runtime/points/draw_points.h"
-#include "tools/graftal/option_values.h"
-#include "tools/graftal/shared_options.h"
+#include "tools/graftal/options/shared.h"
+#include "tools/graftal/options/values.h"
 
 namespace graftal {
 

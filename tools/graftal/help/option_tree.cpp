@@ -1,4 +1,4 @@
-#include "tools/graftal/option_tree.h"
+#include "tools/graftal/help/option_tree.h"
 
 #include <algorithm>
 #include <cctype>
@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "compiler/passes/pipeline.h"
-#include "tools/graftal/help_format.h"
+#include "tools/graftal/help/format.h"
 
 namespace graftal {
 

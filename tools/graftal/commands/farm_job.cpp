@@ -1,12 +1,12 @@
-#include "tools/graftal/farm_job.h"
+#include "tools/graftal/commands/farm_job.h"
 
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "compiler/session/shared_framing.h"
-#include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
+#include "tools/graftal/options/animate.h"
 #include "tools/graftal/report.h"
 
 namespace graftal {

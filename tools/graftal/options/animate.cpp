@@ -1,4 +1,4 @@
-#include "tools/graftal/animate_options.h"
+#include "tools/graftal/options/animate.h"
 
 #include <filesystem>
 #include <set>
@@ -7,7 +7,7 @@
 
 #include "compiler/import/importers.h"
 #include "runtime/render/animate.h"
-#include "tools/graftal/option_values.h"
+#include "tools/graftal/options/values.h"
 
 namespace graftal {
 

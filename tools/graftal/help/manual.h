@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "tools/graftal/option_tree.h"
+#include "tools/graftal/help/option_tree.h"
 
 namespace graftal {
 

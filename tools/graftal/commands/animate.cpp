@@ -8,8 +8,8 @@
 #include "runtime/render/frame_store.h"
 #include "runtime/system/interruption.h"
 #include "runtime/system/worker_threads.h"
-#include "tools/graftal/animate_options.h"
 #include "tools/graftal/commands.h"
+#include "tools/graftal/options/animate.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
 

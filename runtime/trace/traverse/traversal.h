@@ -67,15 +67,13 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
-    struct Places; ///< which parts are looked into (places.h)
-    template<Instructions instructions, bool any>
-    struct Kernel;     ///< the traversal proper (kernel.h)
+    struct Places;                                               ///< which parts are looked into (places.h)
+    template<Instructions instructions, bool any> struct Kernel; ///< the traversal proper (kernel.h)
     struct EvenPlaces; ///< which parts of an even model are looked into (even_places.h)
-    template<Instructions instructions, bool any>
-    struct EvenKernel; ///< through even models (even.h)
+    template<Instructions instructions, bool any> struct EvenKernel; ///< through even models (even.h)
     template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
-    struct PacketWalk;                                     ///< eight rays at once (packet.h)
-    template<Instructions instructions> struct EvenPacket; ///< through even models (packet_even.h)
+    struct PacketWalk;                                       ///< eight rays at once (packet.h)
+    template<Instructions instructions> struct EvenPacket;   ///< through even models (packet_even.h)
     template<Instructions instructions> struct TurnedPacket; ///< through others (packet_turned.h)
     struct PacketRoom;                                       ///< their memory
     struct LaterEntries;                                     ///< entries for a ray to look into later

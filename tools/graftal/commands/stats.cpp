@@ -1,5 +1,5 @@
-#include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
+#include "compiler/session/stages.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
 

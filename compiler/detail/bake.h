@@ -1,7 +1,7 @@
 #pragma once
 
 #include "compiler/detail/baked.h"
-#include "compiler/detail/symmetry.h"
+#include "compiler/detail/graph/symmetry.h"
 
 namespace graftal {
 

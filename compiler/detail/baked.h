@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/detail/cut_graph.h"
-#include "compiler/detail/mesh.h"
+#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/mesh/mesh.h"
 #include "compiler/detail/self_shadow.h"
 
 namespace graftal {
@@ -37,7 +37,8 @@ struct BakeRequest {
     bool limit_normals = false;                 ///< of proxies, where nothing was crushed
     const SelfShadows* self_shadows = nullptr;  ///< none: whatever stands for parts has its own light
     std::uint64_t most_shell_work = UINT64_MAX; ///< points moved for a shell: it gets coarser by that
-    bool shell = false; ///< a shell (shell.h) of this very node, of whose painters the colour alone counts
+    bool shell =
+        false; ///< a shell (shell/shell.h) of this very node, of whose painters the colour alone counts
     ShellStore* shells = nullptr;           ///< where its points are kept; none: they are made anew
     bool pictures = true;                   ///< else what has a texture shows its material's colour
     std::uint64_t most_visits = UINT64_MAX; ///< of the walk through the subtree

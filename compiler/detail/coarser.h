@@ -36,7 +36,7 @@ Limit limit_of_work(double seconds);
 /// Warns that a limit made the picture coarser. `root`: the place of the model's root.
 void warn_of_limit(const Span& root, const Limit& limit, const CoarserError& error, Diagnostics& diagnostics);
 
-/// Warns that shells (shell.h) have not as many points as they should.
+/// Warns that shells (shell/shell.h) have not as many points as they should.
 void warn_of_shells(const Span& root, const CoarserError& error, Diagnostics& diagnostics);
 
 } // namespace graftal

@@ -28,7 +28,7 @@ struct DetailOptions {
     int light_steps = 16;
     double work_seconds = 30;  ///< of one processor, for the picture (work.h); infinite: whatever it takes
     bool visible_only = false; ///< drop what is out of the picture, with its shadows and reflections
-    /// Whether proxies show the limit's normals (limit_normal.h), or their own.
+    /// Whether proxies show the limit's normals (mesh/limit_normal.h), or their own.
     bool limit_normals = true;
     bool keeps_objects = false; ///< of detail_passes(): what is met can be told by the model's objects
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "compiler/detail/graph/piece_kind.h"
+#include "compiler/detail/graph/run_cells.h"
 #include "compiler/detail/piece.h"
-#include "compiler/detail/piece_kind.h"
-#include "compiler/detail/run_cells.h"
 #include "compiler/primitives/texture_space.h"
 
 namespace graftal {

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "compiler/detail/alike_set.h"
 #include "compiler/detail/baked.h"
-#include "compiler/detail/limit_normal.h"
-#include "compiler/detail/symmetry.h"
+#include "compiler/detail/graph/alike_set.h"
+#include "compiler/detail/graph/symmetry.h"
+#include "compiler/detail/mesh/limit_normal.h"
 
 namespace graftal {
 

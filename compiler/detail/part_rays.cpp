@@ -7,11 +7,11 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/detail/graph/piece_kind.h"
+#include "compiler/detail/graph/run_cells.h"
 #include "compiler/detail/least_width.h"
-#include "compiler/detail/limit_normal.h"
+#include "compiler/detail/mesh/limit_normal.h"
 #include "compiler/detail/piece.h"
-#include "compiler/detail/piece_kind.h"
-#include "compiler/detail/run_cells.h"
 #include "compiler/graph/path.h"
 #include "compiler/primitives/intersect.h"
 

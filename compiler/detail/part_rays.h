@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/graph/cut_graph.h"
 #include "compiler/detail/projection.h"
 #include "compiler/support/ray.h"
 
@@ -28,7 +28,7 @@ struct PartHit {
 class PartRays {
   public:
     /// Keeps references. `root_steps`: levels that the root has. `watched_px`: PartHit::part. Requires a
-    /// projection that culls by pixels. `limit_normals`: whether proxies show them (limit_normal.h).
+    /// projection that culls by pixels. `limit_normals`: whether proxies show them (mesh/limit_normal.h).
     PartRays(const CutGraph& cut, const Projection& projection, std::uint32_t root_steps, double watched_px,
              bool limit_normals);
 

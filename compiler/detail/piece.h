@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "compiler/detail/cut_graph.h"
-#include "compiler/detail/piece_kind.h"
+#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/piece_kind.h"
 #include "compiler/detail/projection.h"
 #include "compiler/detail/weights.h"
 

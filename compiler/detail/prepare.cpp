@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/detail/build_cut_graph.h"
-#include "compiler/detail/coverage.h"
+#include "compiler/detail/graph/build_cut_graph.h"
+#include "compiler/detail/shadow/coverage.h"
 #include "compiler/support/stage_price.h"
 
 namespace graftal {

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "compiler/analysis/bounding.h"
-#include "compiler/detail/cut_graph.h"
 #include "compiler/detail/detail_options.h"
-#include "compiler/detail/shell_store.h"
-#include "compiler/detail/symmetry.h"
+#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/symmetry.h"
+#include "compiler/detail/shell/store.h"
 #include "compiler/graph/components.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/control.h"

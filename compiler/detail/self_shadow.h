@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/detail/cut_graph.h"
-#include "compiler/detail/symmetry.h"
+#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/symmetry.h"
 #include "compiler/scene/scene.h"
 
 namespace graftal {

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "compiler/detail/baked.h"
-#include "compiler/detail/coverage.h"
-#include "compiler/detail/point_set.h"
-#include "compiler/detail/run_cells.h"
+#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/shadow/coverage.h"
+#include "compiler/detail/shell/point_set.h"
 #include "compiler/primitives/tessellate.h"
 
 namespace graftal {

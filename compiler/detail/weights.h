@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/detail/cut_graph.h"
-#include "compiler/detail/piece_kind.h"
-#include "compiler/detail/shell_sizes.h"
+#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/piece_kind.h"
+#include "compiler/detail/shell/sizes.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {
@@ -40,7 +40,7 @@ class Weights {
         double curved_leaves = 0; ///< leaves whose meshes only come near them
         double flat_bytes = 0;    ///< of the engine's memory, where every leaf is a placement of its own
         /// True if somewhere in it more leaves lie in each other than anybody could unfold: a mesh of it
-        /// becomes a shell (shell.h).
+        /// becomes a shell (shell/shell.h).
         bool crowded = false;
 
         Weight& operator+=(const Weight& other);

@@ -11,7 +11,7 @@ namespace graftal {
 struct WorkRates {
     static constexpr double ray_steps = 1.1e8;      ///< of rays, shading included (RayWork)
     static constexpr double samples = 1.2e7;        ///< of pixels, whatever their rays meet
-    static constexpr double shell_points = 6e6;     ///< points of shells moved (shell_points.h)
+    static constexpr double shell_points = 6e6;     ///< points of shells moved (shell/points.h)
     static constexpr double mesh_triangles = 1.5e6; ///< triangles of meshes sorted into boxes for rays
     static constexpr double leaves = 4e6;           ///< leaves unfolded into placements
     static constexpr double visits = 1.5e7;         ///< parts visited to make a mesh of a node (LeafWalk)

@@ -10,7 +10,8 @@
 
 namespace graftal {
 
-/// The finish of a surface; the numbers are those of POV-Ray, which the tracer follows too (optics.h).
+/// The finish of a surface; the numbers are those of POV-Ray, which the tracer follows too
+/// (trace/shade/optics.h).
 struct Material {
     std::string name;
     Rgb rgb{0.8};
@@ -28,7 +29,8 @@ struct Material {
     /// The path in scene units that leaves of white light the material's own rgb; 0: it is the surface that
     /// colours what goes through it.
     double absorption = 0;
-    double blur = 0; ///< how rough mirrors and glass are: the alpha of Trowbridge and Reitz (facets.h)
+    double blur =
+        0; ///< how rough mirrors and glass are: the alpha of Trowbridge and Reitz (trace/shade/facets.h)
     /// The picture that is wrapped round each primitive in place of rgb (texture_space.h). It is named by
     /// the file it is read from or the model it is drawn from; empty: none. Where its alpha is below 1/2
     /// there is no surface.

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "compiler/detail/mesh.h"
+#include "compiler/detail/mesh/mesh.h"
 #include "compiler/graph/graph.h"
 #include "compiler/povray/run_placements.h"
 #include "compiler/povray/units.h"

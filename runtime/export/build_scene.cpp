@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "compiler/detail/baked.h"
+#include "compiler/detail/graph/piece_kind.h"
 #include "compiler/detail/least_width.h"
-#include "compiler/detail/piece_kind.h"
 #include "compiler/detail/placed_set.h"
 #include "compiler/detail/projection.h"
 #include "compiler/graph/path.h"

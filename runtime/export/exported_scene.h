@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/detail/cut_graph.h"
-#include "compiler/detail/run_cells.h"
+#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/run_cells.h"
 #include "compiler/graph/material.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/big_count.h"

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "runtime/render/samplings.h"
-#include "runtime/trace/shade.h"
-#include "runtime/trace/trace_model.h"
+#include "runtime/trace/model/trace_model.h"
+#include "runtime/trace/shade/shade.h"
 
 namespace graftal {
 

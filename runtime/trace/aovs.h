@@ -4,10 +4,10 @@
 #include <limits>
 #include <vector>
 
-#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/graph/cut_graph.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/ray.h"
-#include "runtime/trace/surfaces.h"
+#include "runtime/trace/shade/surfaces.h"
 
 namespace graftal {
 

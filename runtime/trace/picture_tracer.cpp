@@ -17,8 +17,8 @@
 #include "compiler/support/counter_random.h"
 #include "runtime/trace/camera_rays.h"
 #include "runtime/trace/pixel_filter.h"
-#include "runtime/trace/sample_stream.h"
-#include "runtime/trace/traversal.h"
+#include "runtime/trace/shade/sample_stream.h"
+#include "runtime/trace/traverse/traversal.h"
 
 namespace graftal {
 

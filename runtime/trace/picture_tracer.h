@@ -8,9 +8,9 @@
 #include "compiler/support/workers.h"
 #include "runtime/image/image.h"
 #include "runtime/trace/aovs.h"
+#include "runtime/trace/model/trace_model.h"
 #include "runtime/trace/noise_meter.h"
-#include "runtime/trace/shade.h"
-#include "runtime/trace/trace_model.h"
+#include "runtime/trace/shade/shade.h"
 
 namespace graftal {
 

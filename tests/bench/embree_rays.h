@@ -7,7 +7,7 @@
 
 #include <embree3/rtcore.h>
 
-#include "runtime/trace/trace_model.h"
+#include "runtime/trace/model/trace_model.h"
 
 namespace graftal {
 

@@ -15,7 +15,7 @@
 #include "runtime/image_files/image_files.h"
 #include "runtime/system/disk_files.h"
 #include "runtime/trace/camera_rays.h"
-#include "runtime/trace/traversal.h"
+#include "runtime/trace/traverse/traversal.h"
 #include "tests/image/oracle.h"
 
 namespace graftal {

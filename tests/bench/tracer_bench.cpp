@@ -23,7 +23,7 @@
 #include "compiler/support/counter_random.h"
 #include "runtime/system/disk_files.h"
 #include "runtime/trace/camera_rays.h"
-#include "runtime/trace/traversal.h"
+#include "runtime/trace/traverse/traversal.h"
 #include "tests/bench/embree_rays.h"
 
 namespace graftal {

@@ -10,7 +10,7 @@
 #include "compiler/detail/prepare.h"
 #include "compiler/passes/drop_unreachable.h"
 #include "compiler/support/check.h"
-#include "runtime/trace/traversal.h"
+#include "runtime/trace/traverse/traversal.h"
 #include "tests/property/random_graph.h"
 
 using namespace graftal;

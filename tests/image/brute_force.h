@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "compiler/povray/cut/cut.h"
-#include "runtime/trace/surfaces.h"
+#include "runtime/trace/shade/surfaces.h"
 
 namespace graftal {
 

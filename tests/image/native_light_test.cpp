@@ -13,7 +13,7 @@
 
 #include "compiler/povray/emit/view.h"
 #include "runtime/trace/camera_rays.h"
-#include "runtime/trace/shade.h"
+#include "runtime/trace/shade/shade.h"
 #include "tests/image/brute_force.h"
 #include "tests/image/drawing.h"
 #include "tests/image/povray_samples.h"

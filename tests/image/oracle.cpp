@@ -19,7 +19,7 @@
 #include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 #include "runtime/trace/camera_rays.h"
-#include "runtime/trace/traversal.h"
+#include "runtime/trace/traverse/traversal.h"
 #include "tests/image/coincidence.h"
 #include "tests/unit/povray/cut/cut_graph.h"
 

@@ -14,7 +14,7 @@
 #include "compiler/session/stages.h"
 #include "runtime/system/disk_files.h"
 #include "runtime/trace/camera_rays.h"
-#include "runtime/trace/traversal.h"
+#include "runtime/trace/traverse/traversal.h"
 
 namespace graftal {
 namespace {

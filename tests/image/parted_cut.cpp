@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/detail/build_cut_graph.h"
-#include "compiler/detail/coverage.h"
-#include "compiler/detail/shell_store.h"
+#include "compiler/detail/graph/build_cut_graph.h"
+#include "compiler/detail/shadow/coverage.h"
+#include "compiler/detail/shell/store.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/povray/cut/assemble.h"
 

@@ -18,7 +18,7 @@
 #include "runtime/system/disk_files.h"
 #include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
-#include "runtime/trace/traversal.h"
+#include "runtime/trace/traverse/traversal.h"
 
 namespace graftal {
 namespace {

@@ -12,12 +12,12 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
+#include "compiler/detail/graph/run_cells.h"
 #include "compiler/detail/piece.h"
 #include "compiler/detail/prepare.h"
-#include "compiler/detail/run_cells.h"
 #include "compiler/passes/drop_unreachable.h"
 #include "compiler/scene/scene.h"
-#include "runtime/trace/traversal.h"
+#include "runtime/trace/traverse/traversal.h"
 #include "tests/property/random_graph.h"
 
 namespace graftal {

@@ -11,7 +11,7 @@
 #include "runtime/points/tone.h"
 #include "runtime/render/render.h"
 #include "runtime/render/sweep.h"
-#include "tools/graftal/farm_options.h"
+#include "tools/graftal/options/farm.h"
 
 namespace graftal {
 

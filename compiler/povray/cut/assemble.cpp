@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compiler/detail/bake.h"
-#include "compiler/detail/shell_shares.h"
+#include "compiler/detail/shell/shares.h"
 #include "compiler/detail/work.h"
 #include "compiler/povray/cut/grouping.h"
 #include "compiler/povray/cut/place_pieces.h"

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "compiler/detail/symmetry.h"
+#include "compiler/detail/graph/symmetry.h"
 #include "compiler/povray/cut/choose.h"
 #include "compiler/povray/cut/place_pieces.h"
 #include "compiler/povray/cut_parts.h"

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "compiler/detail/bake.h"
-#include "compiler/detail/piece_kind.h"
+#include "compiler/detail/graph/piece_kind.h"
 #include "compiler/detail/weights.h"
 #include "compiler/povray/cut/calibrate.h"
 

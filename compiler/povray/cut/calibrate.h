@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "compiler/detail/cut_graph.h"
-#include "compiler/detail/symmetry.h"
+#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/symmetry.h"
 
 namespace graftal {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "compiler/detail/graph/symmetry.h"
 #include "compiler/detail/piece.h"
-#include "compiler/detail/symmetry.h"
 #include "compiler/support/control.h"
 
 namespace graftal {

@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 
 #include "compiler/detail/coarser.h"
-#include "compiler/detail/coverage.h"
-#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/graph/cut_graph.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/detail/self_shadow.h"
+#include "compiler/detail/shadow/coverage.h"
 #include "compiler/detail/work.h"
 #include "compiler/povray/costs.h"
 #include "compiler/povray/cut/assemble.h"

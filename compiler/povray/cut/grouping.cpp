@@ -12,7 +12,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/detail/bake.h"
-#include "compiler/detail/mesh_builder.h"
+#include "compiler/detail/mesh/builder.h"
 
 namespace graftal {
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "compiler/detail/cut_graph.h"
+#include "compiler/detail/graph/cut_graph.h"
 #include "compiler/povray/cut/placed.h"
 #include "compiler/povray/cut_parts.h"
 #include "compiler/support/id_table.h"

@@ -10,11 +10,11 @@
 
 #include <glm/matrix.hpp>
 
-#include "compiler/detail/alike_set.h"
 #include "compiler/detail/bake.h"
+#include "compiler/detail/graph/alike_set.h"
+#include "compiler/detail/graph/run_cells.h"
 #include "compiler/detail/least_width.h"
 #include "compiler/detail/placed_set.h"
-#include "compiler/detail/run_cells.h"
 #include "compiler/detail/work.h"
 #include "compiler/graph/walk.h"
 #include "compiler/primitives/tessellate.h"

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "compiler/detail/symmetry.h"
+#include "compiler/detail/graph/symmetry.h"
 #include "compiler/povray/cut/choose.h"
 #include "compiler/povray/cut/placed.h"
 

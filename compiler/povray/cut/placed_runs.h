@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "compiler/detail/graph/run_cells.h"
 #include "compiler/detail/piece.h"
-#include "compiler/detail/run_cells.h"
 
 namespace graftal {
 

@@ -60,7 +60,7 @@ std::string shine_text(const Material& m) {
     return text;
 }
 
-/// A pigment's words for light that goes through (optics.h).
+/// A pigment's words for light that goes through (trace/shade/optics.h).
 std::string clearness(const Material& m) {
     if (!m.is_transparent()) return {};
     const double filter = m.surface_filter();

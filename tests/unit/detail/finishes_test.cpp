@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/detail/cut_graph.h"
-#include "compiler/detail/lit_colours.h"
+#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/shadow/lit_colours.h"
 
 namespace graftal {
 namespace {

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/analysis/bounding.h"
-#include "compiler/detail/build_cut_graph.h"
+#include "compiler/detail/graph/build_cut_graph.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
 #include "compiler/passes/pipeline.h"

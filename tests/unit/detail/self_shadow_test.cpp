@@ -6,10 +6,10 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "compiler/detail/coverage.h"
+#include "compiler/detail/graph/symmetry.h"
 #include "compiler/detail/part_rays.h"
 #include "compiler/detail/prepare.h"
-#include "compiler/detail/symmetry.h"
+#include "compiler/detail/shadow/coverage.h"
 #include "compiler/graph/path.h"
 #include "compiler/primitives/intersect.h"
 #include "tests/unit/detail/models.h"

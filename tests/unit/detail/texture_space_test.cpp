@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "compiler/detail/mesh_builder.h"
+#include "compiler/detail/mesh/builder.h"
 #include "compiler/primitives/tessellate.h"
 
 namespace graftal {

@@ -7,9 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runtime/export/pbr.h"
-#include "runtime/export/plotter.h"
-#include "runtime/export/rigid_parts.h"
+#include "runtime/export/formats/pbr.h"
+#include "runtime/export/formats/plotter.h"
+#include "runtime/export/formats/rigid_parts.h"
 
 namespace graftal {
 namespace {

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "compiler/detail/bake.h"
-#include "compiler/detail/cut_graph.h"
-#include "compiler/detail/shell_store.h"
+#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/shell/store.h"
 #include "compiler/detail/weights.h"
 #include "compiler/povray/cut/assemble.h"
 #include "runtime/system/memory_limit.h"

@@ -1,4 +1,4 @@
-// Rooms within a layer include each other in one direction.
+// Rooms within a layer include each other in one direction, and few of them are large.
 
 #include <filesystem>
 #include <fstream>
@@ -44,7 +44,7 @@ Arrows arrows_between_rooms(const fs::path& root) {
     return arrows;
 }
 
-/// The ways from a room back to it, as the includes that they take; "" if there is none.
+/// A way from one room to another, as the includes that it takes; "" if there is none.
 std::string way_back(const Arrows& arrows, const fs::path& from, const fs::path& to,
                      std::set<fs::path>& seen) {
     const auto next = arrows.find(from);
@@ -80,6 +80,23 @@ TEST(Rooms, ACircleIsFound) {
                            {"compiler/a/z", {{"compiler/a/x", "3"}}}};
     EXPECT_NE(circles(circle), "");
     EXPECT_EQ(circles({{"compiler/a/x", {{"compiler/a/y", "1"}}}}), "");
+}
+
+TEST(Rooms, FewAreLarge) {
+    const fs::path root = GRAFTAL_SOURCE_DIR;
+    std::map<std::string, int> sources;
+    for (const char* const top : {"compiler", "runtime", "tools/graftal"})
+        for (const fs::directory_entry& file : fs::recursive_directory_iterator(root / top))
+            if (file.is_regular_file() && is_source(file.path()))
+                ++sources[fs::relative(file.path().parent_path(), root).string()];
+    std::string large;
+    int count = 0;
+    for (const auto& [room, files] : sources)
+        if (files > 30) {
+            large += room + " ";
+            ++count;
+        }
+    EXPECT_LE(count, 4) << "a room of more than 30 files wants rooms of its own: " << large;
 }
 
 } // namespace

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/trace/traversal.h"
+#include "runtime/trace/traverse/traversal.h"
 #include "tests/unit/trace/models.h"
 
 namespace graftal {

@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "runtime/trace/shade.h"
+#include "runtime/trace/shade/shade.h"
 
 namespace graftal {
 

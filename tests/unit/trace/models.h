@@ -9,7 +9,7 @@
 #include "compiler/analysis/contraction.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/graph/graph.h"
-#include "runtime/trace/trace_model.h"
+#include "runtime/trace/model/trace_model.h"
 
 namespace graftal::test {
 

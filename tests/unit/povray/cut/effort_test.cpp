@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/detail/cut_graph.h"
-#include "compiler/detail/symmetry.h"
+#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/symmetry.h"
 #include "compiler/detail/weights.h"
 #include "compiler/povray/cut/calibrate.h"
 #include "compiler/povray/cut/choose.h"

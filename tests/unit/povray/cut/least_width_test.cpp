@@ -12,7 +12,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
-#include "compiler/detail/alike_set.h"
+#include "compiler/detail/graph/alike_set.h"
 #include "compiler/povray/cut/cut.h"
 #include "tests/unit/povray/cut/cut_graph.h"
 

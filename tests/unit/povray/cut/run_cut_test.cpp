@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "compiler/analysis/contraction.h"
-#include "compiler/detail/build_cut_graph.h"
+#include "compiler/detail/graph/build_cut_graph.h"
+#include "compiler/detail/graph/run_cells.h"
 #include "compiler/detail/prepare.h"
-#include "compiler/detail/run_cells.h"
 #include "compiler/povray/cut/cut.h"
 #include "tests/unit/povray/cut/cut_graph.h"
 

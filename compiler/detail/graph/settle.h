@@ -1,0 +1,23 @@
+#pragma once
+
+#include <algorithm>
+
+#include "compiler/detail/graph/cut_graph.h"
+
+namespace graftal {
+
+/// Finds what each node has by what its edges lead to, also where these lead back to it. `update(id)` takes
+/// it from the edges, and says by how much it changed. It is called on every node with edges, masters first,
+/// up to `sweeps` times, until none changes by `enough`.
+template<typename Update> void settle(const CutGraph& cut, int sweeps, double enough, const Update& update) {
+    const std::vector<NodeId> order = masters_first(cut);
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+        double change = 0;
+        for (const NodeId id : order)
+            if (!cut.nodes[id].primitive && !cut.nodes[id].edges.empty())
+                change = std::max(change, update(id));
+        if (change < enough) return;
+    }
+}
+
+} // namespace graftal

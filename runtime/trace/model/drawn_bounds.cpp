@@ -1,0 +1,184 @@
+#include "runtime/trace/model/drawn_bounds.h"
+
+#include <utility>
+
+#include <glm/matrix.hpp>
+
+#include "compiler/analysis/bounding.h"
+#include "compiler/analysis/contraction.h"
+#include "compiler/detail/graph/run_cells.h"
+#include "compiler/graph/components.h"
+#include "compiler/primitives/primitive.h"
+
+namespace graftal {
+
+namespace {
+
+/// Edges of graphs with more than this many are bounded by the boxes of their children's boxes, the others by
+/// what they hold.
+constexpr std::size_t most_exact_edges = 5000;
+
+Instance instance_of(const CutEdge& edge) {
+    Instance instance;
+    instance.master = edge.child;
+    instance.parent_from_child = edge.node_from_child;
+    return instance;
+}
+
+Box box_by(const Primitive& primitive, const Affine& place, double (*support)(const Primitive&, Vec3)) {
+    const Mat3 rows = glm::transpose(place.linear);
+    Box box;
+    for (int axis = 0; axis < 3; ++axis) {
+        box.min[axis] = place.translation[axis] - support(primitive, -rows[axis]);
+        box.max[axis] = place.translation[axis] + support(primitive, rows[axis]);
+    }
+    return box;
+}
+
+std::size_t edge_count(const CutGraph& cut) {
+    std::size_t count = 0;
+    for (const CutNode& node : cut.nodes)
+        count += node.edges.size() + node.stop_edges.size();
+    return count;
+}
+
+class Bounder {
+  public:
+    Bounder(const CutGraph& cut, std::uint64_t most_pieces)
+        : cut_(cut), exact_(edge_count(cut) <= most_exact_edges), most_pieces_(most_pieces) {
+        graph_.root = cut.root;
+        for (const CutNode& node : cut.nodes) {
+            Object object;
+            object.primitive = node.primitive;
+            for (const std::vector<CutEdge>* edges : {&node.edges, &node.stop_edges})
+                for (const CutEdge& edge : *edges)
+                    object.instances.push_back(instance_of(edge));
+            graph_.objects.push_back(std::move(object));
+        }
+        for (const PrimitiveKind kind : {PrimitiveKind::sphere, PrimitiveKind::cube}) {
+            Object primitive;
+            primitive.primitive = kind;
+            graph_.objects.push_back(std::move(primitive));
+        }
+        for (NodeId id = 0; id < cut.nodes.size(); ++id) {
+            if (!cut.nodes[id].cell) continue;
+            const Box& box = cut.nodes[id].cell->box; // a cube stands for what the cell holds
+            Instance about;
+            about.master = static_cast<ObjectId>(cut.nodes.size() + 1);
+            about.parent_from_child = Affine::translate(box.centre()) * Affine::scale(0.5 * box.size());
+            graph_.objects[id].instances.push_back(about);
+        }
+        for (NodeId id = 0; id < cut.nodes.size(); ++id) {
+            const CutNode& node = cut.nodes[id];
+            if (node.primitive || !node.stop_edges.empty() || !(node.cullable || node.unending)) continue;
+            Instance proxy;
+            proxy.master = static_cast<ObjectId>(cut.nodes.size());
+            proxy.parent_from_child = node.node_from_proxy;
+            graph_.objects[id].instances.push_back(proxy);
+        }
+    }
+
+    DrawnBounds run() {
+        const std::size_t nodes = cut_.nodes.size();
+        for (NodeId id = 0; id < nodes; ++id)
+            for (const std::vector<CutEdge>* edges : {&cut_.nodes[id].edges, &cut_.nodes[id].stop_edges})
+                for (const CutEdge& edge : *edges)
+                    if (needs_object(edge)) add_object(edge);
+        bound();
+        DrawnBounds result;
+        result.pieces = pieces_;
+        std::size_t next = nodes + 2;
+        for (const CutNode& node : cut_.nodes) {
+            result.node.push_back(boxes_[result.node.size()]);
+            for (const bool stop : {false, true}) {
+                std::vector<Box>& boxes = (stop ? result.stop_edge : result.edge).emplace_back();
+                for (const CutEdge& edge : stop ? node.stop_edges : node.edges)
+                    boxes.push_back(needs_object(edge) ? boxes_[next++] : box_of(edge));
+            }
+        }
+        return result;
+    }
+
+  private:
+    void bound() {
+        const Components components = strong_components(graph_);
+        const Contraction contraction = decide_contraction(graph_, components);
+        const bool proved = contraction.verdict == Verdict::acyclic || contraction.verdict == Verdict::proved;
+        boxes_ =
+            proved ? bound_boxes(graph_, components, contraction, most_pieces_, pieces_) : boxes_by_balls();
+    }
+
+    /// The model contracts, but this is another graph of it, and the effort that is spent on a proof is
+    /// bounded. Without one, room is left about the balls for what is drawn besides the limit set.
+    std::vector<Box> boxes_by_balls() const {
+        constexpr double room = 3;
+        std::vector<Box> boxes(graph_.objects.size());
+        const std::size_t nodes = cut_.nodes.size();
+        for (NodeId id = 0; id < nodes; ++id) {
+            const Ball& ball = cut_.nodes[id].ball;
+            if (!(ball.radius > 0)) continue;
+            boxes[id].include(ball.centre - Vec3(room * ball.radius));
+            boxes[id].include(ball.centre + Vec3(room * ball.radius));
+        }
+        boxes[nodes] = primitive_bounds(PrimitiveKind::sphere).box;
+        boxes[nodes + 1] = primitive_bounds(PrimitiveKind::cube).box;
+        for (ObjectId id = 0; id < graph_.objects.size(); ++id) {
+            const std::vector<Instance>& instances = graph_.objects[id].instances;
+            const std::size_t inside = id < nodes ? cut_.nodes[id].edges.size() : 0;
+            for (std::size_t i = inside; i < instances.size(); ++i)
+                boxes[id].include(transformed(instances[i].parent_from_child, boxes[instances[i].master]));
+        }
+        return boxes;
+    }
+
+    bool needs_object(const CutEdge& edge) const {
+        return exact_ && !cut_.nodes[edge.child].primitive && !keeps_axes(edge.node_from_child.linear);
+    }
+
+    Box box_of(const CutEdge& edge) const {
+        const auto primitive = cut_.nodes[edge.child].primitive;
+        if (primitive && *primitive != PrimitiveKind::plane)
+            return box_of_image(*primitive, edge.node_from_child);
+        return transformed(edge.node_from_child, boxes_[edge.child]);
+    }
+
+    void add_object(const CutEdge& edge) {
+        Object object;
+        object.instances.push_back(instance_of(edge));
+        graph_.objects.push_back(std::move(object));
+    }
+
+    const CutGraph& cut_;
+    bool exact_;
+    const std::uint64_t most_pieces_;
+    std::uint64_t pieces_ = 0;
+    Graph graph_;
+    std::vector<Box> boxes_;
+};
+
+} // namespace
+
+bool keeps_axes(const Mat3& m) {
+    for (int column = 0; column < 3; ++column) {
+        int along = 0;
+        for (int row = 0; row < 3; ++row)
+            along += m[column][row] != 0;
+        if (along > 1) return false;
+    }
+    return true;
+}
+
+Box box_of_image(const Primitive& primitive, const Affine& place) {
+    return box_by(primitive, place, primitive_support);
+}
+
+Box box_about_image(const Primitive& primitive, const Affine& place) {
+    const auto reach = traits_of(primitive).reach;
+    return box_by(primitive, place, reach ? reach : primitive_support);
+}
+
+DrawnBounds drawn_bounds(const CutGraph& cut, std::uint64_t most_pieces) {
+    return Bounder(cut, most_pieces).run();
+}
+
+} // namespace graftal

@@ -1,0 +1,467 @@
+#include "runtime/trace/model/trace_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "compiler/detail/piece.h"
+#include "compiler/detail/work.h"
+#include "compiler/primitives/texture_space.h"
+#include "compiler/support/stage_price.h"
+#include "runtime/trace/model/drawn_bounds.h"
+#include "runtime/trace/model/unroll.h"
+
+namespace graftal {
+
+namespace {
+
+/// Sizes are kept in here, so that inverses are numbers too.
+constexpr double least_size = 1e-140, largest_size = 1e140;
+
+/// Where the frame of a node lies in the frame that the graph gives it. Scaled by a power of two, so that
+/// maps keep their digits.
+Affine graph_from_frame(const CutNode& node, const Box& box) {
+    if (node.primitive || box.empty()) return {};
+    const Vec3 half = 0.5 * box.max - 0.5 * box.min;
+    const double size = std::clamp(std::max({half.x, half.y, half.z}), least_size, largest_size);
+    return Affine::translate(box.centre()) * Affine::scale(Vec3(std::exp2(std::ceil(std::log2(size)))));
+}
+
+TraceNode::Kind kind_of(const CutNode& node) {
+    if (node.primitive) return TraceNode::Kind::primitive;
+    if (node.cell) return TraceNode::Kind::run;
+    if (node.unbounded) return TraceNode::Kind::unbounded;
+    return node.sealed ? TraceNode::Kind::crushed : TraceNode::Kind::parts;
+}
+
+/// Most edges of a graph whose small groups are spelt out at each use, which takes memory.
+constexpr std::size_t most_edges_spelt_out = 200'000;
+
+/// Fills in nodes, edges and boxes of a model.
+class ModelBuilder {
+  public:
+    explicit ModelBuilder(TraceModel& model)
+        : model_(model), cut_(model.layers.cut), bounds_(model.ground->bounds) {
+        std::size_t edges = 0;
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
+            model_.graph_from_frame.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));
+            edges += cut_.nodes[id].edges.size() + cut_.nodes[id].stop_edges.size();
+        }
+        spells_out_groups_ = edges <= most_edges_spelt_out;
+        if (spells_out_groups_) return;
+        model_.edges.reserve(edges + cut_.nodes.size());
+        model_.looks.reserve(edges + cut_.nodes.size());
+    }
+
+    void build() {
+        add_root_edge();
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id)
+            add_node(id);
+    }
+
+  private:
+    void add_root_edge() {
+        TraceEdge edge;
+        edge.child = cut_.root;
+        edge.to_primitive = cut_.nodes[cut_.root].primitive.has_value();
+        const Affine& world_from_root = model_.graph_from_frame[cut_.root];
+        set_map(edge, world_from_root, norm(world_from_root.linear));
+        edge.box = bounds_.node[cut_.root];
+        edge.similarity = true;
+        edge.find_upright();
+        add(edge, {});
+    }
+
+    /// Fills in what the edge says of its look. `holder`: of a primitive.
+    void add(const TraceEdge& edge, TraceLook look, std::uint32_t holder = TraceLook::none) {
+        look.child = edge.child;
+        look.levels = edge.levels;
+        look.child_has_mean = model_.source(edge.child).terminal;
+        const std::uint32_t node = edge.to_primitive ? holder : edge.child;
+        if (node != TraceLook::none) look.node = model_.layers.source[node];
+        model_.edges.push_back(edge);
+        model_.looks.push_back(look);
+    }
+
+    void add_node(NodeId id) {
+        const CutNode& source = cut_.nodes[id];
+        const Affine frame_from_graph = inverse(model_.graph_from_frame[id]);
+        TraceNode node;
+        node.kind = kind_of(source);
+        node.primitive = source.primitive.value_or(PrimitiveKind::sphere);
+        node.unending = source.unending;
+        node.cullable = source.cullable;
+        node.faint = source.shadowless;
+        node.widens = source.widens;
+        node.cut_detail = cut_detail(source, model_.projection.error_px());
+        node.ball_centre = lanes_of(frame_from_graph(source.ball.centre));
+        node.ball_radius = frame_from_graph.linear[0][0] * source.ball.radius;
+        if (!bounds_.node[id].empty()) {
+            const Box drawn = transformed(frame_from_graph, bounds_.node[id]);
+            node.drawn_radius = glm::length(glm::max(glm::abs(drawn.min), glm::abs(drawn.max)));
+        }
+        const Affine frame_from_proxy = frame_from_graph * source.node_from_proxy;
+        node.node_from_proxy = LaneMap(frame_from_proxy);
+        if (!is_singular(frame_from_proxy)) node.proxy_from_node = LaneMap(inverse(frame_from_proxy));
+        node.first_edge = static_cast<std::uint32_t>(model_.edges.size());
+        if (node.kind == TraceNode::Kind::parts) {
+            node.tree = add_edges(id, source.edges, bounds_.edge[id]);
+            node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
+            node.stop_tree = add_edges(id, source.stop_edges, bounds_.stop_edge[id]);
+            node.stop_edge_count =
+                static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge - node.edge_count;
+        } else if (node.kind == TraceNode::Kind::run) {
+            add_cell(*source.cell, frame_from_graph, node);
+        } else if (node.kind == TraceNode::Kind::crushed) {
+            node.tree = add_edges(id, source.edges, bounds_.edge[id]);
+            node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
+        } else if (node.kind == TraceNode::Kind::unbounded) {
+            node.tree = add_edges(id, source.edges, bounds_.edge[id]);
+            node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
+            while (node.endless_count < node.edge_count &&
+                   cut_.nodes[model_.edges[node.first_edge + node.endless_count].child].unbounded)
+                ++node.endless_count;
+        }
+        for (std::size_t i = node.first_edge; i < model_.edges.size(); ++i)
+            node.flattest_edge = std::min(node.flattest_edge, model_.edges[i].flatness);
+        model_.nodes.push_back(node);
+    }
+
+    void add_cell(const RunCell& cell, const Affine& frame_from_graph, TraceNode& node) {
+        node.run = run_of(*cell.source);
+        node.first_edge = static_cast<std::uint32_t>(model_.edges.size());
+        std::vector<BoxedItem> items;
+        for (std::size_t i = cell.first; i < cell.first + cell.count; ++i)
+            items.emplace_back(transformed(frame_from_graph, box_of((*cell.source->run)[i])), 1,
+                               static_cast<std::uint32_t>(i));
+        node.tree = build_packed_tree(items, model_.boxes, model_.packed_boxes);
+    }
+
+    std::uint32_t run_of(const RunSource& source) {
+        const auto [place, added] = run_of_.emplace(&source, static_cast<std::uint32_t>(model_.runs.size()));
+        if (!added) return place->second;
+        TraceRun& run = model_.runs.emplace_back();
+        run.run = source.run.get();
+        run.pictured = std::ranges::any_of(source.materials, [&](const std::optional<MaterialId>& material) {
+            return material && model_.textures.of_material[*material];
+        });
+        reserve_boxes(run.run->size());
+        for (std::size_t i = 0; i < source.run->size(); ++i) {
+            const RunItem& item = (*source.run)[i];
+            add_look(source, item.shape, item.colour, run);
+            if (item.ball) add_look(source, PrimitiveKind::sphere, item.colour, run);
+        }
+        return place->second;
+    }
+
+    /// Makes room for the boxes of `items` more: growing in between would take twice as much.
+    void reserve_boxes(std::size_t items) {
+        constexpr std::size_t items_a_packed_node = 8,
+                              items_a_node = 48; // a little more nodes than there are
+        model_.packed_boxes.reserve(model_.packed_boxes.size() + items / items_a_packed_node +
+                                    cut_.nodes.size());
+        model_.boxes.reserve(model_.boxes.size() + items / items_a_node + 8 * cut_.nodes.size());
+    }
+
+    void add_look(const RunSource& source, RunShape shape, std::uint16_t colour, TraceRun& run) {
+        if (run.edge_of(shape, colour) != no_edge) return;
+        TraceEdge edge;
+        edge.child = source.child[shape.index()];
+        edge.to_primitive = true;
+        TraceLook look;
+        look.material = source.materials[colour].value_or(TraceLook::none);
+        run.looks.push_back({shape, colour, static_cast<std::uint32_t>(model_.edges.size())});
+        add(edge, look);
+    }
+
+    std::uint32_t add_edges(NodeId id, const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) {
+        const Affine frame_from_graph = inverse(model_.graph_from_frame[id]);
+        std::vector<std::uint32_t> numbers;
+        std::set<EdgeKey> met; // parts that coincide are drawn once
+        for (const Part& part : parts_of(edges, boxes)) {
+            if (!met.insert(key_of(part.edge)).second) continue;
+            TraceEdge edge;
+            edge.child = part.edge.child;
+            edge.to_primitive = cut_.nodes[edge.child].primitive.has_value();
+            edge.levels = part.edge.levels;
+            edge.similarity = part.edge.similarity;
+            TraceLook look;
+            look.tint = part.edge.tint;
+            look.material = part.edge.material.value_or(TraceLook::none);
+            edge.turns = part.turns;
+            const Affine& graph_from_child = model_.graph_from_frame[edge.child];
+            set_map(edge, frame_from_graph * part.edge.node_from_child * graph_from_child,
+                    part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
+            edge.find_upright();
+            edge.box = transformed(frame_from_graph, part.box);
+            if (!cut_.nodes[edge.child].unbounded)
+                numbers.push_back(static_cast<std::uint32_t>(model_.edges.size()));
+            add(edge, look, part.holder.value_or(id));
+        }
+        std::vector<BoxedItem> items = grouped_items(model_, numbers);
+        return build_box_tree(items, model_.boxes);
+    }
+
+    /// An instance and the box of what it draws, in the frame that the graph gives the node.
+    struct Part {
+        CutEdge edge;
+        Box box;
+        double turns = 1;
+        std::optional<NodeId> holder = {}; ///< of a primitive, unless it is the node itself
+    };
+
+    /// The instances, with the primitives of small groups in place of the groups: a test of one more box is
+    /// faster than to enter one more frame. The unbounded ones come first.
+    std::vector<Part> parts_of(const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) const {
+        constexpr std::size_t most_parts = 4096;
+        std::vector<Part> parts;
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            if (is_small_group(edges[i].child) && parts.size() + edges.size() < most_parts)
+                add_group(edges[i], parts);
+            else
+                parts.push_back({edges[i], boxes[i], length_in_turns(edges[i].node_from_child.linear)});
+        }
+        std::stable_partition(parts.begin(), parts.end(),
+                              [&](const Part& part) { return cut_.nodes[part.edge.child].unbounded; });
+        return parts;
+    }
+
+    /// A handful of primitives, which is never cut.
+    bool is_small_group(NodeId id) const {
+        const CutNode& node = cut_.nodes[id];
+        return spells_out_groups_ && !node.primitive && !node.cell && !node.unending && !node.unbounded &&
+               !node.sealed && !node.cullable;
+    }
+
+    void add_group(const CutEdge& group, std::vector<Part>& parts) const {
+        for (const CutEdge& member : cut_.nodes[group.child].edges) {
+            CutEdge edge = member;
+            edge.node_from_child = group.node_from_child * member.node_from_child;
+            edge.tint = group.tint * member.tint;
+            if (!edge.material) edge.material = group.material;
+            edge.similarity = group.similarity && member.similarity;
+            edge.stretch =
+                edge.similarity ? group.stretch * member.stretch : norm(edge.node_from_child.linear);
+            edge.levels = group.levels + member.levels;
+            const auto primitive = cut_.nodes[edge.child].primitive;
+            if (primitive)
+                parts.push_back({edge, box_of_image(*primitive, edge.node_from_child),
+                                 length_in_turns(member.node_from_child.linear), group.child});
+            else if (is_small_group(edge.child))
+                add_group(edge, parts);
+            else
+                parts.push_back({edge, transformed(edge.node_from_child, bounds_.node[edge.child]), 1});
+        }
+    }
+
+    static void set_map(TraceEdge& edge, const Affine& parent_from_child, double stretch) {
+        edge.parent_from_child = LaneMap(parent_from_child);
+        const Vec3 sigma = singular_values(parent_from_child.linear);
+        edge.flatness = sigma.x > 0 ? sigma.z / sigma.x : 0;
+        if (!is_singular(parent_from_child)) edge.child_from_parent = LaneMap(inverse(parent_from_child));
+        edge.stretch = stretch;
+        edge.growth = 1 / stretch;
+    }
+
+    using EdgeKey = std::pair<NodeId, std::array<double, 12>>;
+    static EdgeKey key_of(const CutEdge& edge) {
+        EdgeKey key{edge.child, {}};
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 3; ++row)
+                key.second[static_cast<std::size_t>(3 * column + row)] =
+                    column < 3 ? edge.node_from_child.linear[column][row]
+                               : edge.node_from_child.translation[row];
+        return key;
+    }
+
+    TraceModel& model_;
+    bool spells_out_groups_ = true;
+    const CutGraph& cut_;
+    const DrawnBounds& bounds_;
+    std::map<const RunSource*, std::uint32_t> run_of_;
+};
+
+/// Least detail of a unit: at the far end of the model, were it out of the picture.
+double least_detail(const TraceModel& model) {
+    const CutGraph& cut = model.prepared.cut;
+    const Ball& ball = cut.nodes[cut.root].ball;
+    const Camera& camera = model.view.camera;
+    const double reach = glm::distance(ball.centre, camera.location) + 2 * ball.radius;
+    const Ball far{camera.location + reach * camera.direction, 0};
+    return model.projection.detail_per_unit(far) / Projection::coarser_out_of_sight;
+}
+
+/// Farthest reach of terminals from the middle of the part that they stand for, where it is just cut, in
+/// lengths of the error.
+double farthest_terminal(const TraceModel& model) {
+    double farthest = 0;
+    for (const TraceNode& node : model.nodes)
+        for (std::uint32_t i = 0; i < node.stop_edge_count; ++i) {
+            const Box& box = model.edges[node.first_edge + node.edge_count + i].box;
+            if (!(node.ball_radius > 0) || box.empty()) continue;
+            const Vec3 centre = vec3_of(node.ball_centre);
+            const Vec3 corner = glm::max(glm::abs(box.min - centre), glm::abs(box.max - centre));
+            farthest = std::max(farthest, 0.5 * node.cut_detail * glm::length(corner) / node.ball_radius);
+        }
+    return farthest;
+}
+
+/// TraceModel::even.
+bool is_even(const TraceModel& model) {
+    // Where nothing is culled, only what is flat is drawn wider than it is.
+    constexpr double flat = 1e-3;
+    const auto has_flat_proxy = [](const TraceNode& node) {
+        const Vec3 sigma = singular_values(linear_of(node.node_from_proxy));
+        return node.stop_tree == no_tree && !(sigma.z > flat * sigma.x);
+    };
+    const auto is_plain = [&](const TraceNode& node) {
+        const bool widens = node.widens || node.faint;
+        if (node.kind == TraceNode::Kind::primitive)
+            return !is_endless(node) && !(widens && model.projection.culls());
+        return node.kind == TraceNode::Kind::parts &&
+               !(widens && (model.projection.culls() || has_flat_proxy(node)));
+    };
+    const auto is_plain_edge = [](const TraceEdge& edge) {
+        return edge.to_primitive ? edge.flatness > flattest_placement : edge.upright;
+    };
+    return !model.has_shells && !model.clear_texels && std::ranges::all_of(model.nodes, is_plain) &&
+           std::ranges::all_of(model.edges, is_plain_edge);
+}
+
+/// Units of work that making a model may take, by the units of a second; no more than usual.
+std::uint64_t share_of(double work_seconds, double units_a_second, std::uint64_t usual) {
+    constexpr double share = 0.1;
+    return static_cast<std::uint64_t>(
+        std::min(share * work_seconds * units_a_second, static_cast<double>(usual)));
+}
+
+/// Sizes by node of the cut; none if rays come through everywhere.
+std::vector<ShellSizes> found_shell_sizes(TraceModel& model) {
+    const CutGraph& cut = model.prepared.cut;
+    // Sizes are asked for by octaves. An eighth of one tells them apart, and nodes of all sizes share kinds.
+    constexpr int grain = PieceKind::steps_an_octave / 8;
+    Weights weights(cut, {.error_px = model.projection.error_px(),
+                          .grain = grain,
+                          .most_visits = share_of(model.options.work_seconds, WorkRates::kinds,
+                                                  WeightOptions::usual_visits)});
+    Piece root;
+    root.node = cut.root;
+    root.steps = model.prepared.root_steps;
+    std::vector<ShellSizes> sizes;
+    if (weights.of(kind_of(cut, model.projection, root)).crowded) {
+        sizes.resize(cut.nodes.size());
+        for (const NodeId source : model.layers.source)
+            if (!cut.nodes[source].primitive) sizes[source] = weights.shell_sizes(source, root.steps);
+    }
+    model.weighed = weights.visits();
+    return sizes;
+}
+
+/// Where copies lie in each other so often that rays would not come through.
+void find_shells(TraceModel& model) {
+    if (!model.projection.culls()) return;
+    std::optional<std::vector<ShellSizes>>& known = model.ground->shell_sizes;
+    const auto by_error = [](const CutNode& node) { return node.terminal_px > 0; };
+    if (!known || std::ranges::any_of(model.prepared.cut.nodes, by_error)) known = found_shell_sizes(model);
+    const std::vector<ShellSizes>& sizes = *known;
+    if (sizes.empty()) return;
+    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+        model.nodes[i].shell = sizes[model.layers.source[i]];
+        model.has_shells = model.has_shells || model.nodes[i].shell.any();
+    }
+}
+
+/// Most work of one shell: there may be several, and they may be made anew at another error.
+std::uint64_t most_shell_work(const DetailOptions& options) {
+    constexpr double share = 0.15, least = 1e6; // with less there is hardly one
+    const double seconds = options.culls() ? std::min(share * options.work_seconds, 1e6) : 1e6;
+    return static_cast<std::uint64_t>(std::max(least, seconds * WorkRates::shell_points));
+}
+
+} // namespace
+
+void TraceEdge::find_upright() {
+    const auto scales = [](const Mat3& m) { return m == Mat3(m[0][0]) && m[0][0] > 0; };
+    const Mat3 linear = parent_from_child.affine().linear, inverse = child_from_parent.affine().linear;
+    upright = similarity && scales(linear) && scales(inverse);
+}
+
+std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
+    for (const Look& look : looks)
+        if (look.shape == shape && look.colour == colour) return look.edge;
+    return no_edge;
+}
+
+TraceGround::TraceGround(const PreparedCut& prepared, double work_seconds)
+    : layers(layered(prepared.cut, prepared.root_steps)),
+      bounds(drawn_bounds(layers.cut, share_of(work_seconds, 1 / StagePrice::piece, most_pieces))) {}
+
+TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& seen,
+                       const DetailOptions& cut_options, ModelTextures read_textures,
+                       std::shared_ptr<TraceGround> known_ground)
+    : shared(std::move(ready)), prepared(*shared),
+      ground(known_ground ? std::move(known_ground)
+                          : std::make_shared<TraceGround>(prepared, cut_options.work_seconds)),
+      layers(ground->layers), view(seen), options(cut_options),
+      projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
+      meshes(prepared, most_shell_work(options)), textures(std::move(read_textures)) {
+    least_detail_per_unit = least_detail(*this);
+    const CutNode& root = prepared.cut.nodes[prepared.cut.root];
+    for (const CutNode& node : prepared.cut.nodes)
+        if (node.primitive && node.primitive != PrimitiveKind::plane)
+            widest = std::max(widest, widened_reach(*node.primitive));
+    if (root.widens) most_half_width = projection.most_half_width(root.ball);
+    textures.of_material.resize(prepared.cut.materials.size());
+    for (const std::shared_ptr<const Texture>& texture : textures.of_material)
+        clear_texels = clear_texels || (texture && texture->coverage < 1);
+    ModelBuilder(*this).build();
+    terminal_reach = farthest_terminal(*this);
+    find_shells(*this);
+    add_specks(*this);
+    add_unrollings(*this);
+    even = is_even(*this);
+    if (!even) return;
+    even_parts = graftal::even_parts(*this);
+    even_offsets = graftal::even_offsets(*this);
+    even_triangles = graftal::even_triangles(*this, even_parts);
+}
+
+const SelfShadows& TraceModel::self_shadows() const {
+    return ground->self_shadows.get([this] {
+        return measure_self_shadows(prepared.cut, prepared.symmetry, prepared.root_steps, view,
+                                    options.limit_normals, options.light_steps,
+                                    self_shadow_work(options.work_seconds));
+    });
+}
+
+bool TraceModel::is_content() const {
+    const Box& box = prepared.bounds;
+    if (!(most_half_width > 0) || prepared.root_steps != unlimited_steps || box.empty()) return false;
+    const Vec3 size = box.size();
+    return std::min({size.x, size.y, size.z}) <= most_thickness();
+}
+
+double TraceModel::near_enough(const Ray& ray, double share) const {
+    constexpr double before_all = -std::numeric_limits<double>::infinity();
+    if (!is_content()) return before_all;
+    const Box& box = prepared.bounds;
+    const Vec3 size = box.size();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (size[axis] > most_thickness() || ray.direction[axis] == 0) continue;
+        const double slope = std::abs(ray.direction[axis]);
+        const double middle = (box.centre()[axis] - ray.origin[axis]) / ray.direction[axis];
+        const Ball here{ray(middle), 2 * most_half_width};
+        const double half_width = std::min(most_half_width, projection.most_half_width(here));
+        const double height = std::max(half_width, terminal_reach / projection.detail_per_unit(here));
+        return middle - height / slope + share * half_width / glm::length(ray.direction);
+    }
+    return before_all;
+}
+
+} // namespace graftal

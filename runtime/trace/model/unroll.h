@@ -1,0 +1,11 @@
+#pragma once
+
+#include "runtime/trace/model/trace_model.h"
+
+namespace graftal {
+
+/// Adds the unrollings of a model that has all else: of the nodes next to the root first, as long as they are
+/// worth their memory, some MiB at most.
+void add_unrollings(TraceModel& model);
+
+} // namespace graftal

@@ -1,0 +1,275 @@
+#include "runtime/trace/traverse/traversal.h"
+
+#include <algorithm>
+#include <array>
+
+#include <glm/geometric.hpp>
+
+#include "compiler/primitives/texture_space.h"
+#include "compiler/support/stretch.h"
+#include "runtime/trace/model/surface_normal.h"
+#include "runtime/trace/traverse/even.h"
+#include "runtime/trace/traverse/kernel.h"
+#include "runtime/trace/traverse/leaves.h"
+#include "runtime/trace/traverse/packet_room.h"
+#include "runtime/trace/traverse/runs.h"
+#include "runtime/trace/traverse/specks.h"
+
+namespace graftal {
+
+Instructions best_instructions() {
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2")) return Instructions::avx2;
+#endif
+    return Instructions::portable;
+}
+
+namespace {
+
+/// Whether packets may go through a model that is not even: what a ray meets in it does not depend on how far
+/// it had come before. Shells reach out of the boxes of what they stand for, so that a ray which has met
+/// something may pass them by. Sets without area are left out because each ray meets specks of its own.
+bool goes_in_packets(const TraceModel& model) {
+    const auto is_plain = [](const TraceNode& node) {
+        return node.kind == TraceNode::Kind::parts || node.kind == TraceNode::Kind::run ||
+               (node.kind == TraceNode::Kind::primitive && !is_endless(node));
+    };
+    const bool in_specks = model.projection.culls() && model.nodes[model.edges.front().child].faint;
+    return std::ranges::all_of(model.nodes, is_plain) && !model.has_shells && !model.is_content() &&
+           !in_specks;
+}
+
+} // namespace
+
+Traversal::Traversal(const TraceModel& model, Instructions instructions)
+    : model_(model), instructions_(instructions) {
+    frames_.resize(16);
+    later_.resize(128);
+    if (model.even) {
+        even_frames_.resize(16);
+        EvenPlaces{*this, model, {}}.find_root();
+    } else if (!goes_in_packets(model)) {
+        return;
+    }
+    packet_ = std::make_unique<PacketRoom>();
+    if (model.even)
+        packet_->even_frames.resize(16);
+    else
+        packet_->frames.resize(16);
+    packet_->has_textures = std::ranges::any_of(model.textures.of_material,
+                                                [](const auto& texture) { return texture != nullptr; });
+}
+
+Traversal::~Traversal() = default;
+
+namespace {
+
+// The kernel is made in here: what nobody else has the address of stays in registers.
+template<typename Kernel, typename... From>
+bool run_portable(Traversal& traversal, const TraceModel& model, const RayRange& range, const Ray& ray,
+                  const From*... from) {
+    return Kernel{traversal, model, range}.run(ray, from...);
+}
+
+template<typename Kernel, typename... From>
+GRAFTAL_AVX2 bool run_avx2(Traversal& traversal, const TraceModel& model, const RayRange& range,
+                           const Ray& ray, const From*... from) {
+    return Kernel{traversal, model, range}.run(ray, from...);
+}
+
+Rgb colour_of(const Texture::Texel& texel) {
+    static const std::array<double, 256> linear = [] {
+        std::array<double, 256> levels;
+        for (std::size_t level = 0; level < levels.size(); ++level)
+            levels[level] = srgb_decoded(static_cast<std::uint8_t>(level));
+        return levels;
+    }();
+    return {linear[texel.srgb[0]], linear[texel.srgb[1]], linear[texel.srgb[2]]};
+}
+
+} // namespace
+
+template<template<Instructions, bool> typename AnyKernel, bool any, typename... From>
+bool Traversal::run(const Ray& ray, const RayRange& range, const From*... from) {
+    if (instructions_ == Instructions::avx2)
+        return run_avx2<AnyKernel<Instructions::avx2, any>>(*this, model_, range, ray, from...);
+    return run_portable<AnyKernel<Instructions::portable, any>>(*this, model_, range, ray, from...);
+}
+
+template<bool any> bool Traversal::run(const Ray& ray, const RayRange& range) {
+    if (model_.even) return run<EvenKernel, any>(ray, range);
+    return run<Kernel, any>(ray, range, static_cast<const Entry*>(nullptr));
+}
+
+bool Traversal::resume(const Entry& from, const RayRange& range) {
+    const Ray ray = ray_;
+    return run<Kernel, false>(ray, range, &from);
+}
+
+bool Traversal::goes_on() {
+    if (visits_ <= visit_limit_) return true;
+    if (hurries_) return false;
+    hurries_ = true;
+    ++given_up_;
+    if (best_.found) return false;
+    visit_limit_ = visits_ + model_.more_visits();
+    return true;
+}
+
+bool Traversal::closest(const Ray& ray, const RayRange& range, SurfaceHit& hit) {
+    if (!run<false>(ray, range)) return false;
+    show_best(hit);
+    return true;
+}
+
+void Traversal::show_best(SurfaceHit& hit) {
+    path_.clear();
+    std::size_t length = 0;
+    for (const std::uint32_t edge : way_)
+        length += model_.looks[edge & ~from_cut].length;
+    more_work_ += RayWork::shaded * length;
+    if (best_.proxy_node != no_edge || model_.projection.error_px() > SelfShadows::lit_as_px)
+        for (const std::uint32_t edge : way_)
+            append_to_path(edge);
+    surface_at_best(hit);
+}
+
+bool Traversal::meets_any(const Ray& ray, const RayRange& range) {
+    return run<true>(ray, range);
+}
+
+bool Traversal::all_opaque() const {
+    return std::ranges::none_of(model_.prepared.cut.materials, &Material::is_transparent);
+}
+
+void Traversal::append_to_path(std::uint32_t edge) {
+    const TraceLook& whole = model_.looks[edge & ~from_cut];
+    if (whole.before == no_edge) {
+        path_.push_back(edge);
+        return;
+    }
+    append_to_path(whole.before);
+    append_to_path(whole.last);
+}
+
+const TraceMesh& Traversal::shell_of(const Frame& frame) {
+    const TraceNode& node = model_.nodes[frame.node];
+    const Affine world_from_node = frame.world_from_node.affine();
+    const Ball ball{world_from_node(vec3_of(node.ball_centre)), frame.scale * node.ball_radius};
+    const Affine& graph_from_frame = model_.graph_from_frame[frame.node];
+    const double detail_per_unit = frame.scale * model_.projection.detail_per_unit(ball);
+    const MeshStore::Key key =
+        model_.meshes.key(model_.layers.source[frame.node], graph_from_frame, frame.steps, detail_per_unit);
+    const auto hash = static_cast<std::size_t>(key.detail) * 31 + key.node * 13 + key.steps;
+    auto& [known, mesh] = meshes_[hash % meshes_.size()];
+    if (!mesh || known != key) {
+        mesh = &model_.meshes.mesh(key, graph_from_frame);
+        known = key;
+    }
+    return *mesh;
+}
+
+std::optional<MaterialId> Traversal::material_of(std::uint32_t edge) const {
+    const std::uint32_t material = model_.looks[edge & ~from_cut].material;
+    return material != TraceLook::none ? std::optional<MaterialId>(material) : std::nullopt;
+}
+
+const Texture::Texel& Traversal::texel(MaterialId material, std::uint32_t edge, double turns,
+                                       Vec3 point) const {
+    const TraceEdge& way = model_.edges[edge & ~from_cut];
+    const Primitive& primitive = model_.nodes[way.child].primitive;
+    const double around = model_.prepared.cut.materials[material].around;
+    const auto [u, v] = texture_coordinates(primitive, texture_space(primitive, around, turns), point);
+    return model_.textures.of_material[material]->at(u, v);
+}
+
+bool Traversal::is_clear(std::uint32_t edge, std::uint32_t frame, double turns, Vec3 point) const {
+    std::optional<MaterialId> material = material_of(edge);
+    for (std::uint32_t i = frame; i > 0 && !material; --i)
+        material = material_of(frames_[i].edge);
+    if (!material || !model_.textures.of_material[*material] ||
+        model_.textures.of_material[*material]->coverage == 1)
+        return false;
+    return texel(*material, edge, turns, point).clear;
+}
+
+Vec3 Traversal::normal_at_best() const {
+    const bool limit = best_.proxy_node != no_edge && model_.options.limit_normals && !best_.crushed;
+    if (!limit && best_.is_upright) return glm::normalize(best_.normal);
+    if (!limit) return transformed_normal(best_.world_from_leaf, best_.normal);
+    if (!best_.in_world) return limit_normal(model_, path_, best_.proxy_node, best_.normal);
+    const Vec3 normal = transformed_normal(best_.world_from_leaf, best_.normal);
+    return limit_normal_in_world(model_, path_, normal, ray_(best_.t));
+}
+
+/// Share of light at a hit that stands for a culled part.
+double Traversal::light_share_at_best() const {
+    const double error_px = model_.projection.error_px();
+    if (!(error_px > SelfShadows::lit_as_px)) return 1;
+    const auto from_culled = [](std::uint32_t step) { return (step & from_cut) != 0; };
+    const auto end = std::ranges::find_if(path_, from_culled);
+    if (end == path_.begin() || (end == path_.end() && best_.proxy_node == no_edge)) return 1;
+    Affine world_from_node;
+    for (auto step = path_.begin(); step != end; ++step)
+        world_from_node = world_from_node * model_.edges[*step & ~from_cut].parent_from_child.affine();
+    const std::uint32_t number = model_.edges[end[-1] & ~from_cut].child;
+    const TraceNode& node = model_.nodes[number];
+    const Ball ball{world_from_node(vec3_of(node.ball_centre)),
+                    largest_stretch(world_from_node.linear) * node.ball_radius};
+    const double detail = 2 * ball.radius * model_.projection.detail_per_unit(ball);
+    if (!(detail <= 1)) return 1; // no level was left, or the model names a shape
+    return model_.self_shadows().share(model_.layers.source[number], detail * error_px);
+}
+
+/// descend() (detail/piece.h) for one step: several edges at once where an unrolling knows their result.
+void Traversal::look_along(std::uint32_t step, WayLook& look, SurfaceHit& hit) const {
+    const TraceLook& edge = model_.looks[step & ~from_cut];
+    if (!edge.as_one) {
+        look_along(edge.before, look, hit);
+        return look_along(edge.last, look, hit);
+    }
+    if (step & from_cut && look.has_mean)
+        look.inherited = model_.source(look.parent).mean.over(look.inherited);
+    look.tint = look.tint * edge.tint;
+    if (edge.material != TraceLook::none) {
+        look.material = edge.material;
+        hit.material = &model_.prepared.cut.materials[edge.material];
+        look.inherited = hit.material->rgb;
+    }
+    look.parent = edge.child;
+    look.has_mean = edge.child_has_mean;
+    if (edge.node != TraceLook::none) hit.node = edge.node;
+    hit.levels += edge.levels;
+}
+
+void Traversal::surface_at_best(SurfaceHit& hit) const {
+    static const Material plain;
+    const std::vector<Material>& materials = model_.prepared.cut.materials;
+    hit.material = &plain;
+    hit.node = SurfaceHit::no_node;
+    hit.levels = 0;
+    WayLook look{.inherited = plain.rgb};
+    for (const std::uint32_t step : way_)
+        look_along(step, look, hit);
+    const PathTint& tint = look.tint;
+    Rgb inherited = look.inherited;
+    const std::optional<MaterialId> material = look.material;
+    if (best_.mesh_colour) {
+        inherited = best_.mesh_colour->fixed + best_.mesh_colour->open * inherited;
+        if (best_.mesh_colour->material) hit.material = &materials[*best_.mesh_colour->material];
+        if (model_.projection.culls())
+            model_.meshes.note(best_.cell * model_.projection.detail_per_unit({ray_(best_.t), 0}));
+    } else if (best_.proxy_node == no_edge && material && model_.textures.of_material[*material])
+        inherited = colour_of(texel(*material, way_.back(), best_.turns, best_.point));
+    if (best_.proxy_node != no_edge) {
+        const CutNode& stands_for = model_.source(best_.proxy_node);
+        inherited = colour_of_proxy(stands_for).over(inherited);
+        if (stands_for.finish) hit.material = &materials[*stands_for.finish];
+    }
+    hit.t = best_.t;
+    hit.rgb = tint.over(inherited);
+    hit.normal = normal_at_best();
+    hit.light_share = light_share_at_best();
+}
+
+} // namespace graftal

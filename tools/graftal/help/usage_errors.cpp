@@ -1,0 +1,99 @@
+#include "tools/graftal/help/usage_errors.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "compiler/support/diagnostics.h"
+
+namespace graftal {
+
+namespace {
+
+std::vector<std::string> option_names(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* const option : command.get_options())
+        for (const std::string& name : option->get_lnames())
+            names.push_back("--" + name);
+    return names;
+}
+
+/// "--size WxH"
+std::string option_text(const CLI::Option& option) {
+    const std::string value = option.get_type_name();
+    return option.get_name() + (value.empty() ? "" : " " + value);
+}
+
+/// `MODEL`, or `A B`.
+std::string operands_text(const CLI::App& command) {
+    std::string text;
+    for (const CLI::Option* const option : command.get_options())
+        if (option->get_positional()) text += (text.empty() ? "" : " ") + option->get_name();
+    return text;
+}
+
+/// The option that a message of CLI11 is about: it begins with the name. Null if it is about something else.
+const CLI::Option* option_in(const std::string& message, const CLI::App& command) {
+    const std::string name = message.substr(0, message.find_first_of(": "));
+    for (const CLI::Option* const option : command.get_options())
+        if (!option->get_positional() && option->get_name() == name) return option;
+    return nullptr;
+}
+
+std::string unknown_option(const std::string& word, const CLI::App& command) {
+    const std::string name = word.substr(0, word.find('='));
+    const std::string hint = did_you_mean(name, option_names(command));
+    return fmt::format("'{}' has no option '{}'{}", command.get_name(), name,
+                       hint.empty() ? "" : fmt::format(" ({})", hint));
+}
+
+std::string extra_words(const CLI::App& command) {
+    const std::vector<std::string> words = command.remaining(true);
+    const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) {
+        return word.size() > 1 && word.front() == '-';
+    });
+    if (option != words.end()) return unknown_option(*option, command);
+    const std::string word = words.empty() ? "" : words.front();
+    return fmt::format("'{}' is one word too many: '{}' takes {}; put a name with spaces in quotes", word,
+                       command.get_name(), operands_text(command));
+}
+
+} // namespace
+
+std::string unknown_command(const std::string& word, const std::vector<std::string>& commands) {
+    return fmt::format("there is no command '{}' ({})", word, choices(word, commands));
+}
+
+std::string wrong_command(int argc, const char* const* argv, const std::vector<std::string>& commands) {
+    if (argc < 2) return "no command given: try 'graftal render MODEL'";
+    const std::string word = argv[1];
+    const bool known = std::find(commands.begin(), commands.end(), word) != commands.end();
+    if (word.empty() || word.front() == '-' || known) return {};
+    if (word.find_first_of("./") != std::string::npos)
+        return fmt::format("name a command first, such as 'graftal render {}'", word);
+    return unknown_command(word, commands);
+}
+
+std::string usage_message(const CLI::ParseError& error, const CLI::App& command) {
+    const std::string message = error.what();
+    if (dynamic_cast<const CLI::ValidationError*>(&error)) return message; // said by ourselves
+    if (dynamic_cast<const CLI::ExtrasError*>(&error)) return extra_words(command);
+    const CLI::Option* const option = option_in(message, command);
+    if (dynamic_cast<const CLI::ExcludesError*>(&error) && option) {
+        const std::string other = message.substr(message.rfind(' ') + 1);
+        return fmt::format("{} and {} exclude each other: give only one of them", option->get_name(), other);
+    }
+    if (option) return fmt::format("{} needs a value: {}", option->get_name(), option_text(*option));
+    const std::string operands = operands_text(command);
+    if (operands == "A B") return "'compare' takes two pictures: 'graftal compare A B'";
+    if (operands.starts_with("JOB"))
+        return fmt::format("no {} given: try 'graftal farm {} {}'",
+                           message.find("TASKS") != std::string::npos ? "tasks" : "job", command.get_name(),
+                           operands);
+    if (operands.find("MODEL") == std::string::npos)
+        return fmt::format("'{0}' needs {1}: 'graftal {0} {1}'", command.get_name(), operands);
+    return fmt::format("no model given: try 'graftal {} {}'", command.get_name(), operands);
+}
+
+} // namespace graftal

@@ -1,0 +1,182 @@
+#include "tools/graftal/options/points.h"
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "compiler/import/importers.h"
+#include "compiler/support/number.h"
+#include "runtime/points/card.h"
+#include "runtime/points/draw_points.h"
+#include "tools/graftal/options/shared.h"
+#include "tools/graftal/options/values.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr double most_points = 1e15;
+
+/// "20000000", "2e7": a whole number, also by a power of ten.
+std::optional<std::uint64_t> parse_points(const std::string& text) {
+    const std::optional<double> value = parse_number(text);
+    if (!value || !(*value >= 1 && *value <= most_points) || *value != std::floor(*value))
+        return std::nullopt;
+    return static_cast<std::uint64_t>(*value);
+}
+
+/// An option whose value is a number above 0.
+void add_positive(CLI::App& app, const std::string& name, const std::string& help, double& value) {
+    const auto set = [name, &value](const std::string& text) {
+        const std::optional<double> number = parse_number(text);
+        if (!number || !(*number > 0 && *number <= 1e12))
+            throw CLI::ValidationError(fmt::format("{}: '{}' is not a number above 0", name, text));
+        value = *number;
+    };
+    app.add_option_function<std::string>(name, set, help)->type_name("X")->take_last();
+}
+
+/// Adds the options that make colours and light of the measure.
+void add_measure(CLI::App& app, Tone& tone) {
+    add_value(
+        app, "--palette", "NAME|COLOURS",
+        fmt::format("Colour by density, with this palette ({}) or with colours such as '#102040,#ffe080'",
+                    ColourScale::names()),
+        fmt::format("a palette ({}) or colours such as #102040,#ffe080", ColourScale::names()),
+        [](const std::string& text) { return ColourScale::parse(text); },
+        [&tone](ColourScale&& scale) { tone.scale = std::move(scale); });
+    add_value(app, "--ground", "COLOUR",
+              "Colour behind the points, such as black or #102040, in place of the background",
+              "black, white or a colour such as #102040", parse_colour,
+              [&tone](Rgb rgb) { tone.ground = rgb; });
+    app.add_flag("--light", tone.light, "The points shine, on black unless --ground names another colour");
+    add_value(app, "--glow", "SHARE", "Like --light, and this share of the light spreads around the points",
+              "a number from 0 to 1", parse_share, [&tone](double share) {
+                  tone.glow = share;
+                  tone.light = true;
+              });
+}
+
+/// Fills in what `--card` leaves out; returns what is wrong with it, or "".
+std::string complete_card(Options& options) {
+    const std::filesystem::path card = options.points.card;
+    if (card.extension() != ".inst") return fmt::format("--card: '{}' does not end in .inst", card.string());
+    if (options.render.output.empty())
+        options.render.output = std::filesystem::path(card).replace_extension(".png").string();
+    const std::filesystem::path picture = options.render.output;
+    if (picture.extension() != ".png") return "--card: the name of its picture must end in .png";
+    if (picture.parent_path() != card.parent_path()) return "--card: its picture must lie in the same folder";
+    if (!is_card_picture(picture.filename().string()))
+        return "--card: the name of its picture must not contain quotes, backslashes or control characters";
+    return {};
+}
+
+} // namespace
+
+void add_points_options(CLI::App& app, Options& options) {
+    PointsSettings& settings = options.points;
+    app.add_option("-o,--output", options.render.output,
+                   "Picture to write, .png or .exr, or a point cloud, .ply (default: MODEL's name + .png, in "
+                   "this folder)")
+        ->type_name("FILE");
+    const auto points = [&settings](const std::string& text) {
+        settings.points = parse_points(text);
+        if (!settings.points)
+            throw CLI::ValidationError(
+                fmt::format("--points: '{}' is not a whole number from 1 to 1e15, such as 1e9", text));
+    };
+    app.add_option_function<std::string>("--points", points,
+                                         "Number of points (default: 100 per pixel; for a cloud 1e6)")
+        ->type_name("N")
+        ->take_last();
+    const auto colour = [&settings](const std::string& text) {
+        static const std::map<std::string, PointColour> colours = {
+            {"tint", PointColour::tint}, {"map", PointColour::map}, {"density", PointColour::density}};
+        const auto found = colours.find(text);
+        if (found == colours.end())
+            throw CLI::ValidationError(
+                fmt::format("--color: '{}' is neither tint nor map nor density", text));
+        settings.colour = found->second;
+    };
+    app.add_option_function<std::string>("--color", colour,
+                                         "Colour by the model's tints, by the last map, or by the density of "
+                                         "the points (default tint)")
+        ->type_name("tint|map|density")
+        ->take_last();
+    add_positive(app, "--exposure", "How clearly a few points show beside many (default 30)",
+                 settings.tone.exposure);
+    add_positive(app, "--gamma", "Above 1 lightens the thin parts, below 1 darkens them (default 1)",
+                 settings.tone.gamma);
+    add_measure(app, settings.tone);
+    add_bits(app, options);
+    app.add_flag("--transparent", settings.tone.transparent, "Write an alpha channel instead of a background")
+        ->excludes("--ground")
+        ->excludes("--light")
+        ->excludes("--glow");
+    app.add_option("--card", settings.card,
+                   "Also write a model of a flat cube that bears the picture, in place of a flat model, for "
+                   "use as a\n"
+                   "terminal (default size 512x512, exposure 800; the picture is transparent)")
+        ->type_name("FILE.inst");
+    app.parse_complete_callback([&app, &options, &settings] {
+        if (settings.tone.light && !settings.tone.ground) settings.tone.ground = Rgb(0.0);
+        if (app.count("--palette") > 0 && app.count("--color") == 0) settings.colour = PointColour::density;
+        if (settings.card.empty()) return;
+        settings.tone.transparent = true;
+        if (app.count("--size") == 0) options.render.compile.view.size = {512, 512};
+        if (app.count("--exposure") == 0) settings.tone.exposure = 800;
+    });
+    app.footer("Examples:\n"
+               "  graftal points scenes/ifs/fern.rifs                   # makes fern.png\n"
+               "  graftal points scenes/ifs/fern.rifs --points 1e9 --size 2000x3000 -o fern.exr\n"
+               "  graftal points scenes/hart/pound_sign.rifs --points 1e7 -o pound_sign.ply\n"
+               "  graftal points scenes/ifs/twin_dragon.rifs --color map\n"
+               "  graftal points scenes/plants/maple_leaf.rifs --card leaf_card.inst   # and leaf_card.png\n"
+               "  graftal points scenes/orbits/gumowski_mira.rifs --color density --set a=0.31\n"
+               "  graftal points scenes/orbits/clifford.rifs --palette gold --glow 0.3 --bits 16");
+}
+
+std::string complete_points(Options& options) {
+    if (!options.points.card.empty())
+        if (std::string wrong = complete_card(options); !wrong.empty()) return wrong;
+    if (options.render.output.empty() && options.operands.front() == "-")
+        return "a model from standard input has no name: name the picture with '-o FILE'";
+    if (options.render.output.empty()) options.render.output = model_stem(options.operands.front()) + ".png";
+    if (!options.points.card.empty() && options.points.tone.light)
+        return "--card: a card is no light: leave --light and --glow out";
+    if (is_cloud_name(options.render.output))
+        return options.points.colour == PointColour::density
+                   ? "--color density: a cloud has no pixels to count points in; write a picture, or choose "
+                     "tint or map"
+                   : "";
+    if (!is_picture_name(options.render.output))
+        return fmt::format("'{}': the name must end in .png, .exr or .ply", options.render.output);
+    return {};
+}
+
+void add_collage_options(CLI::App& app, Options& options) {
+    app.add_option(
+           "TARGET", options.points.target,
+           "Picture of the target set: its dark pixels, or its opaque pixels if it has an alpha channel")
+        ->required()
+        ->type_name("");
+    const auto set = [&options](const std::string& model) { options.operands = {model}; };
+    app.add_option_function<std::string>("MODEL", set, "Model file of a flat iterated function system, or -")
+        ->required()
+        ->type_name("");
+    add_value(app, "--threshold", "T",
+              "Pixels darker than this, or at least this opaque, belong to the target (default 0.5)",
+              "a number from 0 to 1", parse_share,
+              [&options](double threshold) { options.points.threshold = threshold; });
+    app.add_flag("--light", options.points.light, "The lighter pixels belong to the target");
+    app.add_flag("--json", options.json, "Print one JSON object on standard output");
+    app.footer(
+        "graftal lays the picture over the view that 'points' and 'render' have of the model at its size.\n"
+        "Example:\n"
+        "  graftal points leaf.rifs --size 400x400 --transparent -o leaf.png\n"
+        "  graftal collage leaf.png leaf.rifs");
+}
+
+} // namespace graftal

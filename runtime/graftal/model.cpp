@@ -19,10 +19,13 @@
 #include "runtime/graftal/listed_graph.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/points/draw_points.h"
+#include "runtime/render/file_film.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/render/render.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
+#include "runtime/system/disk_files.h"
+#include "runtime/system/worker_threads.h"
 
 namespace graftal::v1 {
 
@@ -76,6 +79,41 @@ Picture picture_of(const Image& image) {
     return picture;
 }
 
+/// Keeps the last pass.
+class MemoryFilm final : public PictureFilm {
+  public:
+    void begin(const graftal::Tile& window, int) override { window_ = window; }
+    void tile(const graftal::Tile&, const Image&, int) override {}
+    Status end(int, const Image& picture, const AovPicture*) override {
+        picture_ = picture;
+        return {};
+    }
+    const graftal::Tile& window() const { return window_; }
+    const Image& picture() const { return picture_; }
+
+  private:
+    graftal::Tile window_;
+    Image picture_;
+};
+
+/// Hands the tiles on.
+class TileFilm final : public PictureFilm {
+  public:
+    explicit TileFilm(const OnTile& listener) : listener_(listener) {}
+    void begin(const graftal::Tile& window, int) override { window_ = window; }
+    void tile(const graftal::Tile& tile, const Image& picture, int pass) override {
+        const auto row_floats = 3 * static_cast<std::size_t>(picture.width);
+        const std::size_t first = row_floats * static_cast<std::size_t>(tile.y - window_.y) +
+                                  3 * static_cast<std::size_t>(tile.x - window_.x);
+        listener_({tile.x, tile.y, tile.width, tile.height, &picture.pixels[first], row_floats, pass});
+    }
+    Status end(int, const Image&, const AovPicture*) override { return {}; }
+
+  private:
+    const OnTile& listener_;
+    graftal::Tile window_;
+};
+
 constexpr std::uint64_t most_points = 1'000'000'000;
 
 } // namespace
@@ -93,7 +131,7 @@ std::string text_of(const std::vector<Message>& messages) {
 }
 
 struct Model::Parts {
-    explicit Parts(std::string path) : session(std::move(path)) {
+    explicit Parts(std::string path) : session(std::move(path), Keep::everything, files) {
         session.set_control(
             {CancelFlag([this] { return cancelled.load(); }), [this](const Progress& progress) {
                  const auto done = static_cast<double>(progress.done);
@@ -114,6 +152,15 @@ struct Model::Parts {
         return render;
     }
 
+    /// Draws onto a film. Gives the view's own film, which develops the picture for people.
+    std::optional<Film> draw(PictureFilm& film, Compilation& compilation, bool progressive = false) {
+        RenderOptions render = told();
+        render.film = &film;
+        render.progressive = progressive;
+        if (!render_natively(session, render, compilation)) return std::nullopt;
+        return session.viewed(options.compile, compilation)->view.film;
+    }
+
     /// Calls a function that gives a value or nothing.
     template<typename Value, typename Work> Result<Value> run(const Work& work) {
         cancelled = false;
@@ -123,6 +170,7 @@ struct Model::Parts {
         return {std::move(value), messages_of(compilation), false};
     }
 
+    MemoryFiles files{&disk_files()}; ///< texts of the caller, over those of the disk
     PictureSession session;
     RenderOptions options;
     bool error_asked = false;
@@ -144,6 +192,10 @@ Model Model::from_text(std::string name, std::string text) {
     Model model(std::make_unique<Parts>(std::move(name)));
     model.edit(std::move(text));
     return model;
+}
+
+void Model::put_file(const std::string& path, std::string text) {
+    parts_->files.set(path, std::move(text));
 }
 
 void Model::edit(std::string text) {
@@ -308,15 +360,27 @@ Result<Points> Model::points(std::uint64_t count) {
 }
 
 Result<Picture> Model::render() {
-    return parts_->run<Picture>([this](Compilation& compilation) -> std::optional<Picture> {
-        std::optional<Picture> picture;
-        const PictureSink sink = [&](const Image& image) {
-            picture = picture_of(image);
-            return Status();
-        };
-        if (!render_natively(parts_->session, parts_->told(), compilation, sink)) return std::nullopt;
-        return picture;
+    MemoryFilm film;
+    return parts_->run<Picture>([&](Compilation& compilation) -> std::optional<Picture> {
+        const std::optional<Film> shown = parts_->draw(film, compilation);
+        if (!shown) return std::nullopt;
+        return picture_of(developed_picture(film.picture(), film.window(), *shown, SampleFormat::srgb8,
+                                            WorkerThreads(parts_->options.threads)));
     });
+}
+
+Result<Drawn> Model::draw(const OnTile& listener) {
+    TileFilm film(listener);
+    return parts_->run<Drawn>([&](Compilation& compilation) -> std::optional<Drawn> {
+        const Stopwatch watch;
+        if (!parts_->draw(film, compilation, true)) return std::nullopt;
+        return Drawn{{}, watch.seconds()};
+    });
+}
+
+Runs Model::runs() const {
+    const StageRuns runs = parts_->session.runs();
+    return {runs.parsed, runs.lowered, runs.analysed, runs.prepared};
 }
 
 Result<Drawn> Model::render_to(const std::string& path, Engine engine) {

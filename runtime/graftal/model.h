@@ -97,8 +97,25 @@ struct Picture {
     std::vector<std::uint8_t> rgb; ///< 3 width height samples
 };
 
+/// A part of a picture as it is drawn: linear light, not clamped, 3 floats a pixel.
+struct Tile {
+    int x = 0, y = 0, width = 0, height = 0; ///< pixels of the whole picture
+    const float* rgb = nullptr;              ///< of the first pixel, while the listener runs
+    std::size_t row_floats = 0;              ///< from one row to the next
+    int pass = 0;                            ///< from 0; each pass covers the whole picture, and is finer
+};
+
+/// Called for one tile at a time, perhaps by a thread of the library's own.
+using OnTile = std::function<void(const Tile&)>;
+
+/// Counts of the stages that have run, since the model was made.
+struct Runs {
+    std::uint64_t parsed = 0; ///< texts: each file by itself
+    std::uint64_t lowered = 0, analysed = 0, prepared = 0;
+};
+
 struct Drawn {
-    std::string path;
+    std::string path;   ///< empty for a picture in memory
     double seconds = 0; ///< of drawing
 };
 
@@ -140,6 +157,8 @@ class GRAFTAL_API Model {
 
     // Settings. They run nothing.
 
+    /// A file that the model names, or another model does: over the disk's, and from the next reload() on.
+    void put_file(const std::string& path, std::string text);
     void edit(std::string text);                     ///< in place of the file's text
     void reload();                                   ///< reads the file, and those that it names, again
     void set(const std::string& name, double value); ///< a `let` of the model
@@ -170,6 +189,8 @@ class GRAFTAL_API Model {
     Result<Points> points(std::uint64_t count);
     /// Draws into memory, by the native engine: the pixels of the `.png` that render_to() writes.
     Result<Picture> render();
+    /// Draws into the listener, pass after pass, by the native engine.
+    Result<Drawn> draw(const OnTile& listener);
     /// Draws into a file, `.png` or `.exr`, which appears whole or not at all.
     Result<Drawn> render_to(const std::string& path, Engine engine = Engine::native);
     /// Writes a POV-Ray scene: `.pov`, or `.inc` to be included, and the pictures that it needs.
@@ -178,6 +199,8 @@ class GRAFTAL_API Model {
     /// `.stl`, `.svg`, `.pbrt` or `.xml`. Small parts are left out of a model that ends only after
     /// error_px().
     Result<Drawn> export_to(const std::string& path, const ExportSettings& settings = {});
+
+    Runs runs() const;
 
     /// Called now and then while the functions above work, perhaps from a thread of theirs, never twice at a
     /// time. Empty: nobody listens.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/image/develop.h"
-#include "runtime/render/aov_channels.h"
 #include "runtime/render/fit_picture.h"
 #include "runtime/system/worker_threads.h"
 
@@ -25,17 +23,14 @@ Tile window_of(const RenderOptions& options, ImageSize size) {
     return options.tile.value_or(whole_of(size));
 }
 
-Drawing::Drawing(const View& view, const CutGraph& cut, const RenderOptions& options, const PictureSink& sink,
-                 const CancelFlag& cancel)
-    : options_(options), sink_(sink), cancel_(cancel), window_(window_of(options, view.size)),
-      film_(view.film) {
+Drawing::Drawing(const View& view, const RenderOptions& options, PictureFilm& film, const CancelFlag& cancel)
+    : options_(options), film_(film), cancel_(cancel), window_(window_of(options, view.size)) {
     picture_.width = window_.width;
     picture_.height = window_.height;
     picture_.channels = 3;
     picture_.pixels.resize(3 * pixels());
-    if (!options.aovs) return;
-    aovs_.resize(pixels());
-    numbers_.emplace(cut);
+    if (options.aovs) aovs_.resize(pixels());
+    film.begin(window_, picture_.channels);
 }
 
 Status Drawing::look(const TraceModel& model, const std::vector<Sampling>& looks, double work) {
@@ -50,7 +45,7 @@ Status Drawing::finish(const TraceModel& model, const Sampling& finest, double s
     work_ = done_ + finest.samples_a_pixel();
     report_.finished = false;
     std::vector<NoiseMeter> meters;
-    if (options_.progressive && finest.most_samples > 0 && !numbers_ && has_room_for_samples()) {
+    if (options_.progressive && finest.most_samples > 0 && !options_.aovs && has_room_for_samples()) {
         meters.resize(pixels());
         samples_ = &meters;
         Sampling round = finest;
@@ -74,8 +69,9 @@ Status Drawing::look(const TraceModel& model, const Sampling& sampling) {
     report_.error_px = model.options.culls() ? model.projection.error_px() : 0;
     const bool complete = traced == pixels();
     if (!complete && !worth_leaving()) return interrupted();
-    const Status status = write();
+    const Status status = film_.end(pass_++, picture_, aovs());
     if (!status.ok()) return status;
+    if (report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
     note(sampling, traced);
     return complete ? status : interrupted();
 }
@@ -108,9 +104,10 @@ std::size_t Drawing::trace(PictureTracer& tracer, const Sampling& sampling) {
     control.on_tile = [&](const Tile& tile) {
         traced += tile.pixels();
         const double share = static_cast<double>(traced) / static_cast<double>(pixels());
+        film_.tile(tile, picture_, pass_);
         tell((done_ + share * (sampling.samples_a_pixel() - done)) / work_);
     };
-    tracer.trace(sampling, control, window_, picture_, numbers_ ? &aovs_ : nullptr);
+    tracer.trace(sampling, control, window_, picture_, options_.aovs ? &aovs_ : nullptr);
     done_ += sampling.samples_a_pixel() - done;
     if (samples_) samples_done_ = sampling.samples_a_pixel();
     report_.seconds += watch.seconds();
@@ -120,32 +117,6 @@ std::size_t Drawing::trace(PictureTracer& tracer, const Sampling& sampling) {
 void Drawing::tell(double fraction) const {
     if (options_.on_progress)
         options_.on_progress({report_.pictures ? "refining" : "tracing", fraction, report_.samples_a_pixel});
-}
-
-Status Drawing::write() {
-    const RenderOptions& render = options_;
-    const bool linear = render.format == SampleFormat::linear16 || is_exr_name(render.output);
-    const Image image = linear ? picture_ : encoded();
-    MoreChannels more;
-    if (numbers_) more = aov_channels(aovs_, *numbers_);
-    const Status status =
-        sink_ ? sink_(image)
-              : write_image(render.output, image, render.format, render.metadata, numbers_ ? &more : nullptr);
-    if (status.ok() && report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
-    return status;
-}
-
-Image Drawing::encoded() const {
-    Image image = picture_;
-    constexpr int rows = 16;
-    const Developer developer(film_, options_.format, window_.x, window_.y);
-    const auto encode = [&](int, std::uint64_t piece) {
-        const int begin = static_cast<int>(piece) * rows;
-        developer.develop(image, begin, std::min(begin + rows, image.height));
-    };
-    WorkerThreads(options_.threads)
-        .for_each(static_cast<std::uint64_t>((image.height + rows - 1) / rows), encode);
-    return image;
 }
 
 } // namespace graftal

@@ -1,16 +1,15 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
-#include "compiler/light/film.h"
 #include "runtime/image/image.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/render/render.h"
 #include "runtime/render/stopwatch.h"
 #include "runtime/trace/aovs.h"
 #include "runtime/trace/noise_meter.h"
+#include "runtime/trace/picture_film.h"
 #include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
@@ -18,12 +17,11 @@ namespace graftal {
 /// The part of a picture of this size that is drawn.
 Tile window_of(const RenderOptions& options, ImageSize size);
 
-/// One picture of the native engine, from the first sample to the last file. All that it is made of must
-/// outlive it.
+/// One picture of the native engine, from the first sample to the last pass, onto a film. All that it is made
+/// of must outlive it.
 class Drawing {
   public:
-    Drawing(const View& view, const CutGraph& cut, const RenderOptions& options, const PictureSink& sink,
-            const CancelFlag& cancel);
+    Drawing(const View& view, const RenderOptions& options, PictureFilm& film, const CancelFlag& cancel);
 
     /// Coarse looks, one after the other. `work`: samples a pixel of all looks, earlier and later ones too.
     Status look(const TraceModel& model, const std::vector<Sampling>& looks, double work);
@@ -45,18 +43,16 @@ class Drawing {
     /// Returns the number of finished pixels: all, unless it was interrupted.
     std::size_t trace(PictureTracer& tracer, const Sampling& sampling);
     void tell(double fraction) const;
-    Status write();
-    Image encoded() const;
+    const AovPicture* aovs() const { return options_.aovs ? &aovs_ : nullptr; }
 
     const RenderOptions& options_;
-    const PictureSink& sink_;
+    PictureFilm& film_;
     const CancelFlag& cancel_;
     Tile window_; ///< of the picture
-    Film film_;
     Image picture_;
-    AovPicture aovs_;
-    std::optional<ObjectNumbers> numbers_; ///< if there are AOVs
+    AovPicture aovs_; ///< empty where none are asked for
     NativeReport report_;
+    int pass_ = 0;
     Stopwatch watch_;
     std::vector<NoiseMeter>* samples_ = nullptr;    ///< TraceControl::samples, in finish()
     double work_ = 0, done_ = 0, samples_done_ = 0; ///< samples a pixel; the last: of samples_

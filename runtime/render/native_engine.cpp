@@ -10,6 +10,7 @@
 #include "compiler/detail/coarser.h"
 #include "compiler/session/stages.h"
 #include "runtime/render/drawing.h"
+#include "runtime/render/file_film.h"
 #include "runtime/render/fit_picture.h"
 #include "runtime/render/samplings.h"
 #include "runtime/render/scene_files.h"
@@ -209,10 +210,11 @@ bool prepare_model(PictureSession& session, const StageOptions& stages, Prepared
 /// trace_model() by a known fit: the program that found it has said what the work has cost.
 std::optional<NativeReport> trace_fitted(const PreparedView& prepared, const RenderOptions& options,
                                          const Stopwatch& preparing, const CancelFlag& cancel,
-                                         Compilation& compilation, const PictureSink& sink) {
+                                         Compilation& compilation) {
     const PicturePlan plan = plan_picture(prepared, options);
     const std::unique_ptr<TraceModel> model = model_of(*options.fit, prepared, plan.detail);
-    Drawing drawing(prepared.viewed->view, prepared.prepared->cut, options, sink, cancel);
+    FileFilm file(options, prepared.viewed->view.film, prepared.prepared->cut);
+    Drawing drawing(prepared.viewed->view, options, options.film ? *options.film : file, cancel);
     compilation.times.push_back({"prepare", preparing.seconds()});
     const Stopwatch drawing_watch;
     const Sampling& sampling = options.fit->sampling;
@@ -256,31 +258,32 @@ constinit const Engine native_engine = {
 };
 
 std::optional<NativeReport> render_natively(PictureSession& session, const RenderOptions& options,
-                                            Compilation& compilation, const PictureSink& sink) {
+                                            Compilation& compilation) {
     const Stopwatch whole;
     const StageOptions stages = stages_of(options);
     PreparedView model;
     if (!view_model(session, stages, model, compilation)) return std::nullopt;
-    if (!sink) compilation.status = check_writable(options.output);
+    if (!options.film) compilation.status = check_writable(options.output);
     if (!compilation.status.ok()) return std::nullopt;
 
     const Stopwatch preparing;
     const double before = whole.seconds();
     if (!prepare_model(session, stages, model, compilation)) return std::nullopt;
     std::optional<NativeReport> report =
-        trace_model(model, options, preparing, session.control().cancel, compilation, sink);
+        trace_model(model, options, preparing, session.control().cancel, compilation);
     if (report) report->first_picture_seconds += before;
     return report;
 }
 
 std::optional<NativeReport> trace_model(const PreparedView& prepared, const RenderOptions& options,
                                         const Stopwatch& preparing, const CancelFlag& cancel,
-                                        Compilation& compilation, const PictureSink& sink) {
+                                        Compilation& compilation) {
     const Graph& graph = prepared.viewed->model->graph;
     const View& view = prepared.viewed->view;
-    if (options.fit) return trace_fitted(prepared, options, preparing, cancel, compilation, sink);
+    if (options.fit) return trace_fitted(prepared, options, preparing, cancel, compilation);
     const PicturePlan plan = plan_picture(prepared, options);
-    Drawing drawing(view, prepared.prepared->cut, options, sink, cancel);
+    FileFilm file(options, view.film, prepared.prepared->cut);
+    Drawing drawing(view, options, options.film ? *options.film : file, cancel);
     const double seconds_before = preparing.seconds();
     int draft_block = 0;
     std::function<void(const TraceModel&, double)> on_first_look;

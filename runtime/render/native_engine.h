@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -27,12 +26,9 @@ struct NativeReport {
     int pictures = 0;                 ///< written
 };
 
-/// Takes a picture in place of a file: the samples that the file would have.
-using PictureSink = std::function<Status(const Image& image)>;
-
-/// Engine::draw by the traversal of the graph itself. With a sink, the pictures go there.
+/// Engine::draw by the traversal of the graph itself.
 std::optional<NativeReport> render_natively(PictureSession& session, const RenderOptions& options,
-                                            Compilation& compilation, const PictureSink& sink = {});
+                                            Compilation& compilation);
 
 /// The beginning of render_natively(), which fits the model to the work and draws nothing. A picture, or a
 /// part of it, that is drawn with RenderOptions::fit of this is the very picture that it is without.
@@ -50,6 +46,6 @@ struct PreparedView {
 /// Traces after the compiler, for render_natively(). `preparing` runs since the preparation began.
 std::optional<NativeReport> trace_model(const PreparedView& model, const RenderOptions& options,
                                         const Stopwatch& preparing, const CancelFlag& cancel,
-                                        Compilation& compilation, const PictureSink& sink = {});
+                                        Compilation& compilation);
 
 } // namespace graftal

@@ -9,6 +9,7 @@
 #include "compiler/povray/cut/cut.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/render/picture_session.h"
+#include "runtime/trace/picture_film.h"
 #include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
@@ -46,6 +47,7 @@ struct RenderOptions {
     StageOptions compile;
     CutOptions cut;                            ///< of POV-Ray
     std::string output;                        ///< where the picture goes: is_picture_name(output)
+    PictureFilm* film = nullptr;               ///< of the native engine, in place of the file; null: `output`
     ImageMetadata metadata;                    ///< to be written into it
     SampleFormat format = SampleFormat::srgb8; ///< of a PNG; an EXR is linear anyhow
     std::optional<int> antialias = 2;          ///< up to 4^(N-1) samples a pixel; nothing: one

@@ -329,12 +329,6 @@ std::vector<Tile> tiles_of(ImageSize size, int block, const Tile& window) {
 
 } // namespace
 
-Tile common(const Tile& a, const Tile& b) {
-    const int left = std::max(a.x, b.x), top = std::max(a.y, b.y);
-    return {left, top, std::max(0, std::min(a.x + a.width, b.x + b.width) - left),
-            std::max(0, std::min(a.y + a.height, b.y + b.height) - top)};
-}
-
 double Sampling::samples_a_pixel() const {
     if (block == 1 && most_samples > 0) return most_samples;
     const double steps = steps_of(*this);

@@ -11,29 +11,9 @@
 #include "runtime/trace/model/trace_model.h"
 #include "runtime/trace/noise_meter.h"
 #include "runtime/trace/shade/shade.h"
+#include "runtime/trace/tile.h"
 
 namespace graftal {
-
-/// A rectangle of pixels.
-struct Tile {
-    int x = 0, y = 0, width = 0, height = 0;
-
-    std::uint64_t pixels() const {
-        return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    }
-    bool lies_in(ImageSize size) const {
-        return x >= 0 && y >= 0 && width > 0 && height > 0 && x <= size.width - width &&
-               y <= size.height - height;
-    }
-    bool operator==(const Tile&) const = default;
-};
-
-inline Tile whole_of(ImageSize size) {
-    return {0, 0, size.width, size.height};
-}
-
-/// The pixels of both tiles; no pixels where there are none.
-Tile common(const Tile& a, const Tile& b);
 
 /// Fineness of the look at a picture: blocks of pixels that show what their middle does, or samples within
 /// each pixel, on a lattice or at random.

@@ -127,5 +127,31 @@ TEST(Layers, OnlyMainEndsItsProcess) {
     EXPECT_EQ(end_of_process("::kill(child, SIGTERM); turtle.frame_exit(2);"), "");
 }
 
+/// The first header of the operating system in a text; "" if there is none.
+std::string system_header(const std::string& text) {
+    static const std::regex include(
+        R"(#include <((filesystem|fstream|thread|future|condition_variable|unistd\.h|dlfcn\.h|fcntl\.h|csignal|signal\.h|poll\.h|spawn\.h|sys/[a-z/]+\.h))>)");
+    std::smatch match;
+    return std::regex_search(text, match, include) ? match[1].str() : "";
+}
+
+/// The core runs in a browser too: files, threads and programs are behind its doors.
+TEST(Layers, TheCoreKnowsNoOperatingSystem) {
+    const Layers layers = layers_of_project();
+    std::set<std::string> core = layers.at("compiler/session");
+    core.merge(std::set(layers.at("runtime/trace")));
+    EXPECT_FALSE(core.count("compiler/import") || core.count("compiler/povray") ||
+                 core.count("runtime/system"));
+    int sources = 0;
+    visit_sources({core.begin(), core.end()}, [&](const fs::path& file, const std::string& text) {
+        ++sources;
+        EXPECT_EQ(system_header(text), "") << file.string();
+    });
+    EXPECT_GT(sources, 400);
+    EXPECT_EQ(system_header("#include <map>\n#include <thread>\n"), "thread");
+    EXPECT_EQ(system_header("#include <sys/stat.h>\n"), "sys/stat.h");
+    EXPECT_EQ(system_header("#include <mutex>\n"), "");
+}
+
 } // namespace
 } // namespace graftal

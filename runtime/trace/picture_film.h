@@ -1,0 +1,27 @@
+#pragma once
+
+#include "compiler/support/status.h"
+#include "runtime/image/image.h"
+#include "runtime/trace/aovs.h"
+#include "runtime/trace/tile.h"
+
+namespace graftal {
+
+/// The door by which a picture leaves the tracer: a file, the memory of a caller, a socket, the loss of a fit
+/// stand behind it. It is drawn in passes, each finer than the one before; pixels are linear light, not
+/// clamped.
+class PictureFilm {
+  public:
+    virtual ~PictureFilm() = default;
+
+    /// Called once, before all else. `window`: the part of the whole picture that is drawn.
+    virtual void begin(const Tile& window, int channels) = 0;
+    /// Called for each finished tile of a pass, by one thread at a time. `tile` is in pixels of the whole
+    /// picture; `picture` holds the window, with this pass in the tile.
+    virtual void tile(const Tile& tile, const Image& picture, int pass) = 0;
+    /// Called after a pass, or after the part of it that an interruption left, which is worth showing.
+    /// `aovs`: null, or a pixel for each of the picture. A failure ends the drawing.
+    virtual Status end(int pass, const Image& picture, const AovPicture* aovs) = 0;
+};
+
+} // namespace graftal

@@ -25,7 +25,6 @@
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
 #include "runtime/system/disk_files.h"
-#include "runtime/system/worker_threads.h"
 
 namespace graftal::v1 {
 
@@ -79,28 +78,11 @@ Picture picture_of(const Image& image) {
     return picture;
 }
 
-/// Keeps the last pass.
-class MemoryFilm final : public PictureFilm {
-  public:
-    void begin(const graftal::Tile& window, int) override { window_ = window; }
-    void tile(const graftal::Tile&, const Image&, int) override {}
-    Status end(int, const Image& picture, const AovPicture*) override {
-        picture_ = picture;
-        return {};
-    }
-    const graftal::Tile& window() const { return window_; }
-    const Image& picture() const { return picture_; }
-
-  private:
-    graftal::Tile window_;
-    Image picture_;
-};
-
 /// Hands the tiles on.
 class TileFilm final : public PictureFilm {
   public:
     explicit TileFilm(const OnTile& listener) : listener_(listener) {}
-    void begin(const graftal::Tile& window, int) override { window_ = window; }
+    void begin(const PictureShape& shape) override { window_ = shape.window; }
     void tile(const graftal::Tile& tile, const Image& picture, int pass) override {
         const auto row_floats = 3 * static_cast<std::size_t>(picture.width);
         const std::size_t first = row_floats * static_cast<std::size_t>(tile.y - window_.y) +
@@ -152,13 +134,9 @@ struct Model::Parts {
         return render;
     }
 
-    /// Draws onto a film. Gives the view's own film, which develops the picture for people.
-    std::optional<Film> draw(PictureFilm& film, Compilation& compilation, bool progressive = false) {
-        RenderOptions render = told();
+    bool draw(PictureFilm& film, RenderOptions render, Compilation& compilation) {
         render.film = &film;
-        render.progressive = progressive;
-        if (!render_natively(session, render, compilation)) return std::nullopt;
-        return session.viewed(options.compile, compilation)->view.film;
+        return render_natively(session, render, compilation).has_value();
     }
 
     /// Calls a function that gives a value or nothing.
@@ -360,20 +338,21 @@ Result<Points> Model::points(std::uint64_t count) {
 }
 
 Result<Picture> Model::render() {
-    MemoryFilm film;
-    return parts_->run<Picture>([&](Compilation& compilation) -> std::optional<Picture> {
-        const std::optional<Film> shown = parts_->draw(film, compilation);
-        if (!shown) return std::nullopt;
-        return picture_of(developed_picture(film.picture(), film.window(), *shown, SampleFormat::srgb8,
-                                            WorkerThreads(parts_->options.threads)));
+    return parts_->run<Picture>([this](Compilation& compilation) -> std::optional<Picture> {
+        const RenderOptions options = parts_->told();
+        MemoryFilm film(options);
+        if (!parts_->draw(film, options, compilation)) return std::nullopt;
+        return picture_of(film.picture());
     });
 }
 
 Result<Drawn> Model::draw(const OnTile& listener) {
-    TileFilm film(listener);
     return parts_->run<Drawn>([&](Compilation& compilation) -> std::optional<Drawn> {
         const Stopwatch watch;
-        if (!parts_->draw(film, compilation, true)) return std::nullopt;
+        TileFilm film(listener);
+        RenderOptions options = parts_->told();
+        options.progressive = true;
+        if (!parts_->draw(film, options, compilation)) return std::nullopt;
         return Drawn{{}, watch.seconds()};
     });
 }

@@ -30,7 +30,7 @@ Drawing::Drawing(const View& view, const RenderOptions& options, PictureFilm& fi
     picture_.channels = 3;
     picture_.pixels.resize(3 * pixels());
     if (options.aovs) aovs_.resize(pixels());
-    film.begin(window_, picture_.channels);
+    film.begin({window_, picture_.channels, view.film});
 }
 
 Status Drawing::look(const TraceModel& model, const std::vector<Sampling>& looks, double work) {

@@ -213,7 +213,7 @@ std::optional<NativeReport> trace_fitted(const PreparedView& prepared, const Ren
                                          Compilation& compilation) {
     const PicturePlan plan = plan_picture(prepared, options);
     const std::unique_ptr<TraceModel> model = model_of(*options.fit, prepared, plan.detail);
-    FileFilm file(options, prepared.viewed->view.film, prepared.prepared->cut);
+    FileFilm file(options, prepared.prepared->cut);
     Drawing drawing(prepared.viewed->view, options, options.film ? *options.film : file, cancel);
     compilation.times.push_back({"prepare", preparing.seconds()});
     const Stopwatch drawing_watch;
@@ -282,7 +282,7 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     const View& view = prepared.viewed->view;
     if (options.fit) return trace_fitted(prepared, options, preparing, cancel, compilation);
     const PicturePlan plan = plan_picture(prepared, options);
-    FileFilm file(options, view.film, prepared.prepared->cut);
+    FileFilm file(options, prepared.prepared->cut);
     Drawing drawing(view, options, options.film ? *options.film : file, cancel);
     const double seconds_before = preparing.seconds();
     int draft_block = 0;

@@ -1,11 +1,19 @@
 #pragma once
 
+#include "compiler/light/film.h"
 #include "compiler/support/status.h"
 #include "runtime/image/image.h"
 #include "runtime/trace/aovs.h"
 #include "runtime/trace/tile.h"
 
 namespace graftal {
+
+/// The picture that comes.
+struct PictureShape {
+    Tile window; ///< the part of the whole picture that is drawn
+    int channels = 3;
+    Film film; ///< the view's, which makes samples for people of its light
+};
 
 /// The door by which a picture leaves the tracer: a file, the memory of a caller, a socket, the loss of a fit
 /// stand behind it. It is drawn in passes, each finer than the one before; pixels are linear light, not
@@ -14,8 +22,8 @@ class PictureFilm {
   public:
     virtual ~PictureFilm() = default;
 
-    /// Called once, before all else. `window`: the part of the whole picture that is drawn.
-    virtual void begin(const Tile& window, int channels) = 0;
+    /// Called once, before all else.
+    virtual void begin(const PictureShape& shape) = 0;
     /// Called for each finished tile of a pass, by one thread at a time. `tile` is in pixels of the whole
     /// picture; `picture` holds the window, with this pass in the tile.
     virtual void tile(const Tile& tile, const Image& picture, int pass) = 0;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "runtime/render/file_film.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
@@ -74,15 +75,12 @@ class CulledParts : public testing::TestWithParam<LitModel> {
         EXPECT_TRUE(write_text(path, text(more)).ok());
         PictureSession session(path);
         Compilation compilation;
-        Image picture;
-        const auto keep = [&](const Image& image) {
-            picture = image;
-            return Status();
-        };
-        const auto report =
-            render_natively(session, options_for(GetParam().width, error_px, light), compilation, keep);
+        RenderOptions options = options_for(GetParam().width, error_px, light);
+        MemoryFilm film(options);
+        options.film = &film;
+        const auto report = render_natively(session, options, compilation);
         EXPECT_TRUE(report) << compilation.diagnostics.render(compilation.sources);
-        return mean_light(picture);
+        return mean_light(film.picture());
     }
 
     static double povray(const std::string& more, double error_px, DefaultLight light) {

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/render/file_film.h"
 #include "runtime/render/native_engine.h"
 
 namespace graftal {
@@ -81,14 +82,13 @@ class Tiles : public testing::TestWithParam<TiledPicture> {
 
     std::optional<Image> draw(PictureSession& session, const RenderOptions& options) const {
         Compilation compilation;
-        std::optional<Image> image;
-        const auto report = render_natively(session, options, compilation, [&](const Image& drawn) {
-            image = drawn;
-            return Status();
-        });
+        MemoryFilm film(options);
+        RenderOptions render = options;
+        render.film = &film;
+        const auto report = render_natively(session, render, compilation);
         EXPECT_TRUE(report) << compilation.diagnostics.render(compilation.sources)
                             << compilation.status.message();
-        return report ? image : std::nullopt;
+        return report ? std::optional(film.picture()) : std::nullopt;
     }
 };
 
@@ -154,7 +154,9 @@ TEST(TilesOfAFit, TakeNoOtherRays) {
     options.fit = fit_natively(session, options, compilation);
     ASSERT_TRUE(options.fit);
     options.tile = Tile{40, 30, 10, 10};
-    const auto report = render_natively(session, options, compilation, [](const Image&) { return Status(); });
+    MemoryFilm film(options);
+    options.film = &film;
+    const auto report = render_natively(session, options, compilation);
     ASSERT_TRUE(report);
     // Lattices of two steps a pixel, their edges included: the tracer's own tiles meet in row 32.
     EXPECT_EQ(report->rays.camera_rays, 21u * 5u + 21u * 17u);

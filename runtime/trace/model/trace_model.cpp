@@ -22,14 +22,14 @@ namespace graftal {
 namespace {
 
 /// Sizes are kept in here, so that inverses are numbers too.
-constexpr double least_size = 1e-140, largest_size = 1e140;
+constexpr double least_half = 1e-140, largest_half = 1e140;
 
 /// Where the frame of a node lies in the frame that the graph gives it. Scaled by a power of two, so that
 /// maps keep their digits.
 Affine graph_from_frame(const CutNode& node, const Box& box) {
     if (node.primitive || box.empty()) return {};
     const Vec3 half = 0.5 * box.max - 0.5 * box.min;
-    const double size = std::clamp(std::max({half.x, half.y, half.z}), least_size, largest_size);
+    const double size = std::clamp(std::max({half.x, half.y, half.z}), least_half, largest_half);
     return Affine::translate(box.centre()) * Affine::scale(Vec3(std::exp2(std::ceil(std::log2(size)))));
 }
 

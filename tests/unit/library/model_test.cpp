@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -40,6 +42,64 @@ TEST(LibraryModel, AParameterChangesThePictureAndBackAgain) {
     const auto again = model.render();
     ASSERT_TRUE(again) << again.text();
     EXPECT_EQ(again->rgb, thin->rgb);
+}
+
+/// Nothing of the library is shared between models: the thread sanitizer sees to it.
+TEST(LibraryModel, TwoModelsWorkInTwoThreads) {
+    const char* const tree = "lsys tree {\n  angle 25\n  steps 5\n  axiom A(1)\n"
+                             "  A(s) -> F(s)[+A(s*0.8)][-A(s*0.7)]\n}\nsky { bounces: 1 }\n";
+    const auto pictures_of = [](const char* name, const char* text) {
+        Model model = Model::from_text(name, text);
+        model.size(24, 16);
+        model.threads(2);
+        std::vector<std::vector<std::uint8_t>> pictures;
+        for (const double angle : {20.0, 30.0, 40.0}) {
+            model.camera({.location = {}, .look_at = {}, .up = {}, .angle_deg = angle});
+            const auto picture = model.render();
+            EXPECT_TRUE(picture) << picture.text();
+            if (picture) pictures.push_back(picture->rgb);
+            EXPECT_TRUE(model.stats());
+        }
+        return pictures;
+    };
+    const auto crystals = pictures_of("crystal.rifs", crystal), trees = pictures_of("tree.lsys", tree);
+    std::vector<std::vector<std::uint8_t>> found;
+    std::thread other([&] { found = pictures_of("crystal.rifs", crystal); });
+    EXPECT_EQ(pictures_of("tree.lsys", tree), trees);
+    other.join();
+    EXPECT_EQ(found, crystals);
+}
+
+TEST(LibraryModel, TilesCoverThePictureInEachPass) {
+    Model model = small_crystal();
+    std::vector<int> seen; // by pixel, in the last pass
+    int pass = -1;
+    const auto drawn = model.draw([&](const Tile& tile) {
+        if (tile.pass != pass) {
+            EXPECT_TRUE(pass < 0 || seen == std::vector<int>(24 * 16, 1)) << pass;
+            seen.assign(24 * 16, 0);
+            pass = tile.pass;
+        }
+        for (int y = 0; y < tile.height; ++y)
+            for (int x = 0; x < tile.width; ++x) {
+                ++seen[static_cast<std::size_t>((tile.y + y) * 24 + tile.x + x)];
+                EXPECT_GE(tile.rgb[static_cast<std::size_t>(y) * tile.row_floats + 3 * x], 0);
+            }
+    });
+    ASSERT_TRUE(drawn) << drawn.text();
+    EXPECT_GE(pass, 0);
+    EXPECT_EQ(seen, std::vector<int>(24 * 16, 1));
+}
+
+TEST(LibraryModel, FilesInMemoryLieOverThoseOfTheDisk) {
+    Model model = Model::from_text("m.inst", "use part = \"nowhere/part.inst\"\nobject m { part }\n");
+    EXPECT_FALSE(model.stats());
+    model.put_file("nowhere/part.inst", "object part { sphere scale: 3 }\n");
+    model.reload();
+    const auto stats = model.stats();
+    ASSERT_TRUE(stats) << stats.text();
+    EXPECT_NEAR(stats->most->x, 3, 1e-9);
+    EXPECT_EQ(model.runs().parsed, 2u);
 }
 
 TEST(LibraryModel, SaysWhatItKnowsOfAModel) {

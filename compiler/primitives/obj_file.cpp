@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "compiler/primitives/mesh_file.h"
+#include "compiler/support/number.h"
 
 namespace graftal {
 
@@ -35,9 +36,16 @@ class Words {
     std::string_view rest_;
 };
 
-template<typename Number> bool parse(std::string_view word, Number& number) {
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    return error == std::errc() && end == word.data() + word.size();
+bool is_whole(std::from_chars_result read, std::string_view word) {
+    return read.ec == std::errc() && read.ptr == word.data() + word.size();
+}
+
+bool parse(std::string_view word, double& number) {
+    return is_whole(read_double(word.data(), word.data() + word.size(), number), word);
+}
+
+bool parse(std::string_view word, std::int64_t& number) {
+    return is_whole(std::from_chars(word.data(), word.data() + word.size(), number), word);
 }
 
 class ObjReader {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/primitives/mesh_file.h"
+#include "compiler/support/number.h"
 
 // PLY as G. Turk has it ("The PLY Polygon File Format", 1994): a header of elements and their properties,
 // then the elements, as text or binary.
@@ -153,7 +154,7 @@ class PlyReader {
             const std::size_t begin = rest_.find_first_not_of(" \t\r\n");
             if (begin == std::string_view::npos) return fail("the file ends too early");
             rest_.remove_prefix(begin);
-            const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), number);
+            const auto [end, error] = read_double(rest_.data(), rest_.data() + rest_.size(), number);
             if (error != std::errc()) return fail("something in the file is no number");
             rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
             return true;

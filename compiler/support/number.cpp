@@ -1,9 +1,11 @@
 #include "compiler/support/number.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <system_error>
 
 #include "compiler/support/decimal_text.h"
@@ -67,9 +69,38 @@ void append_number(std::string& out, double value, int digits) {
     append_chars(out, value, std::chars_format::general, digits);
 }
 
+#ifdef __cpp_lib_to_chars
+std::from_chars_result read_double(const char* first, const char* last, double& value) {
+    return std::from_chars(first, last, value);
+}
+#else // libc++ before 20. Its programs have the locale "C".
+std::from_chars_result read_double(const char* first, const char* last, double& value) {
+    // strtod() reads more: white space, "+" and hexadecimal digits.
+    const char* begin = first;
+    if (begin != last && *begin == '-') ++begin;
+    if (begin == last || std::string_view(" \t\n\v\f\r+-").find(*begin) != std::string_view::npos)
+        return {first, std::errc::invalid_argument};
+    if (last - begin > 1 && *begin == '0' && (begin[1] == 'x' || begin[1] == 'X')) {
+        value = 0;
+        return {begin + 1, std::errc()};
+    }
+    constexpr std::string_view letters = "0123456789.eE+-infatyINFATY";
+    const std::string text(
+        first, std::find_if(first, last, [&](char c) { return letters.find(c) == std::string_view::npos; }));
+    char* end = nullptr;
+    errno = 0;
+    const double read = std::strtod(text.c_str(), &end);
+    if (end == text.c_str()) return {first, std::errc::invalid_argument};
+    const char* const stop = first + (end - text.c_str());
+    if (errno == ERANGE) return {stop, std::errc::result_out_of_range};
+    value = read;
+    return {stop, std::errc()};
+}
+#endif
+
 std::optional<double> parse_number(std::string_view text) {
     double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [end, error] = read_double(text.data(), text.data() + text.size(), value);
     if (end != text.data() + text.size()) return std::nullopt;
     if (error == std::errc::result_out_of_range && underflows(text)) return 0;
     if (error != std::errc() || !std::isfinite(value)) return std::nullopt;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,9 @@ std::string shortest(double value);
 
 /// Appends `value` with at most `digits` significant digits, without trailing zeros; locale-proof.
 void append_number(std::string& out, double value, int digits);
+
+/// std::from_chars() of a double, which not every library has.
+std::from_chars_result read_double(const char* first, const char* last, double& value);
 
 /// Reads all of `text` as a decimal number; nothing if it is malformed, overflows or is no number ("inf"). A
 /// number too small for a double is 0.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <string>
@@ -53,16 +52,6 @@ std::array<double, 3> hex_colour(std::string_view text) {
     for (int i = 0; i < 3; ++i)
         rgb[static_cast<std::size_t>(i)] = std::round(linear_from_srgb(encoded[i]) * 1000) / 1000;
     return rgb;
-}
-
-/// True for a number text too small for a double, false for one too large: by the place of its first
-/// digit that counts.
-bool underflows(std::string_view text) {
-    const std::size_t e = text.find_first_of("eE");
-    const std::string_view mantissa = text.substr(0, e);
-    if (e != std::string_view::npos && text.substr(e + 1).starts_with('-')) return true;
-    const std::size_t dot = mantissa.find('.');
-    return dot != std::string_view::npos && mantissa.find_first_of("123456789") > dot;
 }
 
 class Lexer {
@@ -237,11 +226,9 @@ class Lexer {
                 ++at_;
         }
         Token& token = add(TokenKind::number, begin);
-        const char* last = token.text.data() + token.text.size();
-        const std::from_chars_result result = std::from_chars(token.text.data(), last, token.number);
-        if (result.ec != std::errc::result_out_of_range) return;
-        token.number = underflows(token.text) ? 0 : 1; // 1, so that nothing else is said about it
-        if (token.number == 1) diagnostics_.error(token.span, "this number is too large");
+        const std::optional<double> number = parse_number(token.text);
+        token.number = number.value_or(1); // so that nothing else is said about it
+        if (!number) diagnostics_.error(token.span, "this number is too large");
     }
 
     void lex_string() {

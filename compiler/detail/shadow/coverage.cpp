@@ -228,7 +228,7 @@ class Fitter {
         if (rounds < 4) return;
         Effort fine{std::min(fine_factor * effort_.pieces, fine_factor * all_pieces / (8 * roots_.size())),
                     Effort::fine_grid};
-        fine.pieces = std::clamp(fine.pieces, effort_.pieces, rounds * effort_.pieces);
+        fine.pieces = std::clamp<std::uint64_t>(fine.pieces, effort_.pieces, rounds * effort_.pieces);
         double limit = 0;
         std::vector<SubtreeShadow> measured;
         for (const NodeId root : roots_)

@@ -16,10 +16,10 @@ using Double4 = double __attribute__((vector_size(32), aligned(32)));
 using Float4 = float __attribute__((vector_size(16), aligned(16)));
 using Float8 = float __attribute__((vector_size(32), aligned(32)));
 using Byte8 = std::uint8_t __attribute__((vector_size(8), aligned(8)));
-using Int4 = std::int32_t __attribute__((vector_size(16), aligned(16)));
-/// Type of the result of comparing: GCC and Clang do not agree on its elements.
+// Results of comparing: GCC and Clang do not agree on their elements.
 using Long4 __attribute__((aligned(32))) = decltype(Double4{} < Double4{});
-using Int8 = std::int32_t __attribute__((vector_size(32), aligned(32)));
+using Int4 __attribute__((aligned(16))) = decltype(Float4{} < Float4{});
+using Int8 __attribute__((aligned(32))) = decltype(Float8{} < Float8{});
 
 /// For functions that take or give vectors: how these are passed depends on the instructions.
 #define GRAFTAL_INLINE inline __attribute__((always_inline))

@@ -34,18 +34,24 @@ GRAFTAL_AVX2 Outcome run_packet_avx2(Traversal& traversal, std::span<const Ray> 
     return {packet.found, packet.to_go_alone()};
 }
 
+template<template<Instructions> typename Packet>
+Outcome run_by(Instructions instructions, Traversal& traversal, std::span<const Ray> rays,
+               const RayRange& range) {
+    if constexpr (knows_avx2)
+        if (instructions == Instructions::avx2)
+            return run_packet_avx2<Packet<Instructions::avx2>>(traversal, rays, range);
+    return graftal::run_packet<Packet<Instructions::portable>>(traversal, rays, range);
+}
+
 } // namespace
 
 std::uint32_t Traversal::run_packet(std::span<const Ray> rays, const RayRange& range,
                                     std::uint32_t& to_go_alone) {
-    const bool avx2 = instructions_ == Instructions::avx2;
     Outcome outcome;
     if (model_.even)
-        outcome = avx2 ? run_packet_avx2<EvenPacket<Instructions::avx2>>(*this, rays, range)
-                       : graftal::run_packet<EvenPacket<Instructions::portable>>(*this, rays, range);
+        outcome = run_by<EvenPacket>(instructions_, *this, rays, range);
     else
-        outcome = avx2 ? run_packet_avx2<TurnedPacket<Instructions::avx2>>(*this, rays, range)
-                       : graftal::run_packet<TurnedPacket<Instructions::portable>>(*this, rays, range);
+        outcome = run_by<TurnedPacket>(instructions_, *this, rays, range);
     to_go_alone = outcome.to_go_alone;
     return outcome.found & ~to_go_alone;
 }

@@ -22,8 +22,10 @@ inline constexpr double surely_more = 1 - 1e-6;
 /// Attribute of functions for AVX2, if the machine may have it.
 #if defined(__x86_64__)
 #define GRAFTAL_AVX2 __attribute__((target("avx2")))
+inline constexpr bool knows_avx2 = true; ///< instantiates the kernels for it
 #else
 #define GRAFTAL_AVX2
+inline constexpr bool knows_avx2 = false;
 #endif
 
 /// One bit for each lane that is true.

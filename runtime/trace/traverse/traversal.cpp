@@ -91,8 +91,9 @@ Rgb colour_of(const Texture::Texel& texel) {
 
 template<template<Instructions, bool> typename AnyKernel, bool any, typename... From>
 bool Traversal::run(const Ray& ray, const RayRange& range, const From*... from) {
-    if (instructions_ == Instructions::avx2)
-        return run_avx2<AnyKernel<Instructions::avx2, any>>(*this, model_, range, ray, from...);
+    if constexpr (knows_avx2)
+        if (instructions_ == Instructions::avx2)
+            return run_avx2<AnyKernel<Instructions::avx2, any>>(*this, model_, range, ray, from...);
     return run_portable<AnyKernel<Instructions::portable, any>>(*this, model_, range, ray, from...);
 }
 

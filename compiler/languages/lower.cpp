@@ -1,5 +1,6 @@
 #include "compiler/languages/lower.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,6 +41,8 @@ LoweredText lower_root(FileId file, const std::string& path, const LowerOptions&
     }
     lowering.loading.push_back({normalised_path(path), Span()});
     LoweredText model{lower_file(file, Span{file, 0, 0}, lowering), std::move(lowering.notes)};
+    std::ranges::stable_sort(model.notes.parameters, {},
+                             [](const ModelParameter& p) { return p.span.begin; });
     if (diagnostics.has_errors() || (model.graph && !check_graph(*model.graph, diagnostics))) return {};
     if (model.graph) check_verified(*model.graph, "lower");
     return model;

@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compiler/light/sky_picture.h"
 #include "compiler/lower/derivation.h"
+#include "compiler/lower/model_parameter.h"
 #include "compiler/lower/translator.h"
 #include "compiler/support/control.h"
 #include "compiler/support/files.h"
@@ -64,6 +66,7 @@ struct LowerNotes {
     std::optional<Derivation> derivation;         ///< of an L-system
     std::shared_ptr<const OrbitModel> orbit;      ///< or null; what is one has no graph
     std::map<std::string, FileStamp> meshes = {}; ///< by path: the files of meshes, as they were when read
+    std::vector<ModelParameter> parameters = {};  ///< of the root model, in the order of its text
     bool limited_by_work = false;                 ///< with more work allowed the graph would be another
 };
 

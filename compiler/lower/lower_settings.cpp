@@ -232,6 +232,19 @@ void check_set_names(const Environment& known_lets, const std::vector<std::strin
     }
 }
 
+void note_parameter(ModelParameter::Kind kind, const std::string& name, const Expression& text, double value,
+                    Lowering& lowering) {
+    if (!lowering.at_root_model()) return;
+    const bool literal =
+        text.kind == Expression::Kind::number ||
+        (text.kind == Expression::Kind::unary && text.operands.front().kind == Expression::Kind::number);
+    std::vector<ModelParameter>& known = lowering.notes.parameters;
+    ModelParameter parameter{kind, name, value, text.span, literal};
+    // Blocks of an L-system are evaluated for each member of their family.
+    if (std::ranges::find(known, text.span, &ModelParameter::span) == known.end())
+        known.push_back(std::move(parameter));
+}
+
 Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer,
                           Lowering& lowering, const Environment& inner) {
     Environment lets = std::move(outer);
@@ -263,6 +276,8 @@ Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environ
             const auto given = inner.find(let.keyword);
             if (is_inner && given != inner.end()) value = given->second;
             lets[let.keyword] = value.value_or(lost_value);
+            note_parameter(is_inner ? ModelParameter::Kind::inner : ModelParameter::Kind::let, let.keyword,
+                           let.values[0], lets[let.keyword], lowering);
         }
     }
     return lets;

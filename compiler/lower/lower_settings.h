@@ -11,6 +11,11 @@ namespace graftal {
 /// this is the root model. Errors: duplicates, unknown names (also of `--set`), values that are not finite,
 /// inner parameters outside of [0, 1].
 Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering);
+
+/// Adds a parameter to the notes of the root model. `text`: its value there.
+void note_parameter(ModelParameter::Kind kind, const std::string& name, const Expression& text, double value,
+                    Lowering& lowering);
+
 /// Evaluates `let`s on top of `outer` values, which they may use and hide, and does not check that `--set`
 /// names are known. `inner`: values of inner parameters, by name, in place of their own.
 Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer,

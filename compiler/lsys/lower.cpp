@@ -160,12 +160,23 @@ class LsysLowering {
             if (value && variable.sizes.empty()) variable.values.assign(1, literal(*value));
             lets.try_emplace(std::string(variable.name.text)); // it comes before a setting of its name
         }
-        for (const auto& [name, setting] : settings)
-            if (const auto value = set_value(name, lets, lowering_))
-                *setting = LsysValue{literal(*value), Span()};
-        if (const auto steps = set_value("steps", lets, lowering_))
-            block.steps = LsysSteps{literal(*steps), Span()};
+        for (const auto& [name, setting] : settings) {
+            const std::optional<double> value = set_value(name, lets, lowering_);
+            if (*setting) note_setting(name, (*setting)->value, value, lets);
+            if (value) *setting = LsysValue{literal(*value), Span()};
+        }
+        const std::optional<double> steps = set_value("steps", lets, lowering_);
+        if (block.steps && block.steps->value) note_setting("steps", *block.steps->value, steps, lets);
+        if (steps) block.steps = LsysSteps{literal(*steps), Span()};
         return block;
+    }
+
+    /// `set`: by the caller, in place of the text.
+    void note_setting(const char* name, const Expression& text, std::optional<double> set,
+                      const Environment& lets) {
+        Diagnostics quiet; // the grammar reports what is wrong
+        const std::optional<double> value = set ? set : evaluate(text, lets, quiet);
+        if (value) note_parameter(ModelParameter::Kind::setting, name, text, *value, lowering_);
     }
 
     void add_family(Block& block, const Environment& lets) {

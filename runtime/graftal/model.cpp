@@ -96,6 +96,23 @@ class TileFilm final : public PictureFilm {
     graftal::Tile window_;
 };
 
+Parameter parameter_of(const ModelParameter& known, const SourceMap& sources) {
+    const Span& span = known.span;
+    const Position at = sources.position(span.file, span.begin);
+    Parameter parameter{.name = known.name,
+                        .value = known.value,
+                        .least = {},
+                        .most = {},
+                        .literal = known.literal,
+                        .file = std::string(sources.name(span.file)),
+                        .line = at.line,
+                        .column = at.column,
+                        .begin = span.begin,
+                        .end = span.end};
+    if (known.kind == ModelParameter::Kind::inner) parameter.least = 0, parameter.most = 1;
+    return parameter;
+}
+
 constexpr std::uint64_t most_points = 1'000'000'000;
 
 } // namespace
@@ -277,6 +294,18 @@ void Model::on_progress(OnProgress listener) {
 
 void Model::cancel() {
     parts_->cancelled = true;
+}
+
+Result<std::vector<Parameter>> Model::parameters() {
+    return parts_->run<std::vector<Parameter>>(
+        [this](Compilation& compilation) -> std::optional<std::vector<Parameter>> {
+            const auto model = parts_->session.lowered(parts_->options.compile, compilation);
+            if (!model) return std::nullopt;
+            std::vector<Parameter> parameters;
+            for (const ModelParameter& known : model->notes.parameters)
+                parameters.push_back(parameter_of(known, compilation.sources));
+            return parameters;
+        });
 }
 
 Result<Stats> Model::stats() {

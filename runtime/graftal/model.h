@@ -56,6 +56,17 @@ template<typename Value> struct Result {
     const Value* operator->() const { return &*value; }
 };
 
+/// A number of a model that set() replaces: a `let`, an inner parameter, or a setting of an L-system.
+struct Parameter {
+    std::string name;
+    double value = 0;                  ///< as it is set, or else as the text has it
+    std::optional<double> least, most; ///< of an inner parameter
+    bool literal = false;              ///< the text has a number there, and not an expression
+    std::string file;                  ///< place of the value in the text
+    unsigned line = 0, column = 0;     ///< from 1
+    std::size_t begin = 0, end = 0;    ///< bytes of the value in the text; the end is after the last
+};
+
 /// The numbers that `graftal stats` prints.
 struct Stats {
     std::size_t objects = 0;
@@ -182,6 +193,8 @@ class GRAFTAL_API Model {
 
     // Results.
 
+    /// In the order of the text.
+    Result<std::vector<Parameter>> parameters();
     Result<Stats> stats();
     /// At most 10^7 instances.
     Result<ObjectGraph> graph();

@@ -102,6 +102,27 @@ TEST(LibraryModel, FilesInMemoryLieOverThoseOfTheDisk) {
     EXPECT_EQ(model.runs().parsed, 2u);
 }
 
+TEST(LibraryModel, ParametersHaveTheirValuesAndPlaces) {
+    const std::string text =
+        "let a = 2, b = -a/2\n"
+        "lsys tree {\n  inner k = 0.25\n  angle 20 + a\n  steps 3\n  axiom F\n  F -> F[+F]F\n}\n";
+    Model model = Model::from_text("tree.lsys", text);
+    model.set("a", 5);
+    const auto parameters = model.parameters();
+    ASSERT_TRUE(parameters) << parameters.text();
+    std::string found;
+    for (const Parameter& parameter : *parameters)
+        found += parameter.name + "=" + std::to_string(parameter.value).substr(0, 5) + " '" +
+                 text.substr(parameter.begin, parameter.end - parameter.begin) + "' " +
+                 (parameter.literal ? "literal" : "computed") + (parameter.most ? " in a range" : "") + "\n";
+    EXPECT_EQ(found, "a=5.000 '2' literal\n"
+                     "b=-2.50 '-a/2' computed\n"
+                     "k=0.250 '0.25' literal in a range\n"
+                     "angle=25.00 '20 + a' computed\n"
+                     "steps=3.000 '3' literal\n");
+    EXPECT_EQ(parameters->at(2).line, 3u);
+}
+
 TEST(LibraryModel, SaysWhatItKnowsOfAModel) {
     Model model = small_crystal();
     const auto stats = model.stats();

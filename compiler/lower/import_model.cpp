@@ -256,7 +256,7 @@ bool within_limits(std::size_t objects, std::size_t instances, Span span, Loweri
     const std::size_t most_objects = lowering.options.max_objects;
     const std::size_t most_instances = most_objects * max_instances_per_object;
     // Later objects need not be made, if those made so far take too much already.
-    if (work_of_graph(objects, instances) > lowering.meter.left())
+    if (work_of_graph(objects, instances) > lowering.meter.left_in_all())
         throw OutOfWork("lower", lowering.help.control.work->limit());
     if (objects <= most_objects && instances <= most_instances) return true;
     lowering.diagnostics.error(

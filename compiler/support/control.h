@@ -78,6 +78,10 @@ class WorkMeter {
 
     /// The seconds of work that are left. Infinite: there is no limit.
     double left() const { return control_.work ? control_.work->left() - owed_ : StageWork::unlimited; }
+    /// The seconds until the limit, those that are kept for later stages too.
+    double left_in_all() const {
+        return control_.work ? control_.work->left_in_all() - owed_ : StageWork::unlimited;
+    }
 
   private:
     void look();

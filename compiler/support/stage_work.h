@@ -23,6 +23,8 @@ class StageWork {
 
     double limit() const { return limit_; }
     double seconds() const { return seconds_; }
+    /// The seconds until the limit.
+    double left_in_all() const { return limit_ > seconds_ ? limit_ - seconds_ : 0; }
     /// Seconds left without those that are kept, for stages that can do with less.
     double left() const { return limit_ > kept_ + seconds_ ? limit_ - kept_ - seconds_ : 0; }
 

@@ -143,6 +143,24 @@ TEST(StageWork, PreparationCounts) {
     EXPECT_THAT(refused.diagnostics.render(refused.sources), HasSubstr("in the stage 'prepare'"));
 }
 
+/// A graph within the limit is no less within it because a picture follows: only stages that choose leave
+/// work for that.
+TEST(StageWork, PicturesRefuseNoGraphThatReportsTake) {
+    const std::string text = hued(4, 400, "hue: 1");
+    StageOptions options;
+    options.detail.work_seconds = 1e6;
+    options.draws = false;
+    Compilation compilation;
+    const auto whole = Session("hues.inst", text).analysed(options, compilation);
+    ASSERT_TRUE(whole);
+    options.detail.work_seconds = 1.1 * whole->work_seconds;
+    ASSERT_GT(options.detail.work_seconds, 2) << "more than the least that there is";
+    options.draws = true;
+    const auto drawn = Session("hues.inst", text).analysed(options, compilation);
+    ASSERT_TRUE(drawn) << compilation.diagnostics.render(compilation.sources);
+    EXPECT_EQ(print(drawn->graph), print(whole->graph));
+}
+
 /// Stages that choose how much they do leave most of the work for the picture.
 TEST(StageWork, PicturesGetFewerVariantsThanReports) {
     const std::string text = "lsys a {\n  angle 1\n  steps 300\n  axiom A\n  A -> BAB\n"

@@ -22,7 +22,8 @@ class TriangleTree {
 
     /// The first triangle that a ray meets within the range, from either side; false if there is none. Any
     /// of triangles no farther apart than `one_depth` may be the first. Adds to `steps` the nodes that the
-    /// ray came to and the triangles that it was held against. Ends after `most_steps`, which are about as
+    /// ray came to and the triangles that it was held against, each twice where the tree is larger than the
+    /// caches of a processor. Ends after `most_steps`, which are about as
     /// many: the first triangle is then the first one met so far. If none was met, the box that the ray came
     /// to last is met as a whole.
     bool meet(const Ray& ray, const RayRange& range, TriangleHit& hit, std::uint32_t& triangle,
@@ -70,6 +71,7 @@ class TriangleTree {
     std::vector<Node> nodes_; ///< the first is the root
     std::vector<Slab> slabs_;
     double extent_ = 0; ///< the largest coordinate
+    std::uint64_t step_weight_ = 1;
 };
 
 } // namespace graftal

@@ -16,7 +16,6 @@
 #include "compiler/lsys/compose/sizes.h"
 #include "compiler/lsys/derive/deriver.h"
 #include "compiler/lsys/derive/folded_word.h"
-#include "compiler/lsys/derive/ordered.h"
 #include "compiler/lsys/derive/queries.h"
 #include "compiler/lsys/derive/stream.h"
 #include "compiler/lsys/palette.h"
@@ -261,11 +260,6 @@ class Drawer {
         LsysStage stage;
         if (grammar_.has_queries())
             stage = [&](std::uint32_t step, ModuleString& word) { return queries.answer(step, word); };
-        if (grammar_.in_order) {
-            LsysOrderedDeriver deriver(rewriter_, diagnostics_, options_.seed, options_.max_modules);
-            deriver.after_each_step(std::move(stage));
-            return take_word(deriver.derive(steps_));
-        }
         LsysDeriver deriver(rewriter_, diagnostics_, options_.seed, options_.max_modules);
         if (can_draw_run() && LsysStream::can_derive(grammar_))
             deriver.give_up_where_little_repeats(options_.run_from);

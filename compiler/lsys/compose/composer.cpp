@@ -142,13 +142,13 @@ bool LsysComposer::choose(RuleKind kind, ModuleId module, Stage stage, std::uint
     if (!rewriter_.is_rewritten(kind, module, moment)) return true;
     const std::vector<Alternative>* alternatives = rewriter_.alternatives(kind, module, moment);
     if (!alternatives) return false;
-    const ChosenAlternative chosen = variants_.choose(*alternatives, variant, chance_module(module),
-                                                      chance_stage(stage, kind == RuleKind::interpret));
-    result.by = chosen.alternative;
-    result.within = chosen.within;
+    const Winner<Alternative> chosen = variants_.choose(*alternatives, variant, chance_module(module),
+                                                        chance_stage(stage, kind == RuleKind::interpret));
+    result.by = chosen.entrant;
+    result.set = chosen.even_set();
     result.kind = kind;
     result.moment = moment;
-    result.random = alternatives->size() > 1 || chosen.alternative->rule->draws > 0;
+    result.random = alternatives->size() > 1 || chosen.entrant->rule->draws > 0;
     return true;
 }
 
@@ -343,10 +343,10 @@ bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& s
     if (unfolded.random) task.turtle.read_variant();
     if (unfolded.aged) task.turtle.read_birth();
     if (unfolded.by->rule->draws == 0) return true;
-    std::optional<ModuleString> drawn =
-        rewriter_.draw(*unfolded.by, module, unfolded.moment, unfolded.within);
+    const ModuleString* const drawn =
+        rewriter_.successor(*unfolded.by, module, unfolded.moment, unfolded.set);
     if (!drawn) return false;
-    task.drawn = std::move(*drawn);
+    task.drawn = *drawn;
     task.string = task.drawn;
     return true;
 }

@@ -19,11 +19,11 @@ std::uint32_t Variants::child(std::uint32_t variant, ModuleId parent, std::uint3
     return mask_ == 0 ? 0 : permuted(variant, mask_, key_of(seed_, parent, stage, place));
 }
 
-ChosenAlternative Variants::choose(const std::vector<Alternative>& alternatives, std::uint32_t variant,
-                                   ModuleId module, std::uint32_t stage) const {
+Winner<Alternative> Variants::choose(const std::vector<Alternative>& alternatives, std::uint32_t variant,
+                                     ModuleId module, std::uint32_t stage) const {
     constexpr std::uint64_t of_choice = UINT64_MAX; // no place in a string
     const std::uint64_t key = key_of(seed_, module, stage, of_choice);
-    return alternative_at(alternatives, stratified(variant, mask_, key));
+    return graftal::choose(alternatives.data(), draw_at(stratified(variant, mask_, key)));
 }
 
 } // namespace graftal

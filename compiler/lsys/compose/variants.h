@@ -21,9 +21,9 @@ class Variants {
 
     /// The variant of a child at a place of the parent's string.
     std::uint32_t child(std::uint32_t variant, ModuleId parent, std::uint32_t stage, std::size_t place) const;
-    /// The alternative that a variant takes. Requires probabilities that sum to 1.
-    ChosenAlternative choose(const std::vector<Alternative>& alternatives, std::uint32_t variant,
-                             ModuleId module, std::uint32_t stage) const;
+    /// The alternative that a variant takes. Requires that they share all draws.
+    Winner<Alternative> choose(const std::vector<Alternative>& alternatives, std::uint32_t variant,
+                               ModuleId module, std::uint32_t stage) const;
 
   private:
     std::uint64_t seed_;

@@ -43,16 +43,13 @@ bool LsysDecomposer::run(ModuleId module, const CounterRandom& random, ModuleStr
         }
         if (depth == max_decomposition_depth || ++applied_ > max_modules_)
             return refuse(module, "does not end");
-        const ChosenAlternative chosen = alternative_at(*alternatives, CounterRandom::unit(random(draws++)));
-        std::optional<ModuleString> drawn;
-        if (chosen.alternative->rule->draws > 0) {
-            drawn = rewriter_.draw(*chosen.alternative, next, moment(next), chosen.within);
-            if (!drawn) return false;
-        }
-        const ModuleString& successor = drawn ? *drawn : chosen.alternative->successor;
-        if (out.size() + pending_.size() + successor.size() > max_modules_)
+        const Winner<Alternative> chosen = choose(alternatives->data(), random(draws++));
+        const ModuleString* const successor =
+            rewriter_.successor(*chosen.entrant, next, moment(next), chosen.even_set());
+        if (!successor) return false;
+        if (out.size() + pending_.size() + successor->size() > max_modules_)
             return refuse(module, "is too long");
-        for (auto part = successor.rbegin(); part != successor.rend(); ++part)
+        for (auto part = successor->rbegin(); part != successor->rend(); ++part)
             pending_.push_back({*part, depth + 1});
     }
     return true;

@@ -19,22 +19,24 @@ LsysDeriver::LsysDeriver(LsysRewriter& rewriter, Diagnostics& diagnostics, std::
     const LsysGrammar& grammar = rewriter.grammar();
     is_timed_ = grammar.time(RuleKind::produce) != 0;
     has_cuts_ = has_cuts(grammar);
+    if (grammar.in_order) ordered_.emplace(rewriter, matcher_, diagnostics, max_modules);
 }
 
 std::optional<ModuleString> LsysDeriver::derive(unsigned steps) {
     const bool derived = derive_to(steps);
     rewriter_.set_birth(ModuleTable::no_birth);
+    if (ordered_) ordered_->end();
     if (!derived) return std::nullopt;
     next_ = {};
     return std::exchange(word_, {});
 }
 
 bool LsysDeriver::derive_to(unsigned steps) {
+    steps_ = steps;
     failed_ = failed_ || !rewriter_.prepare(steps) || !begin();
     changed_ = true;
     while (!failed_ && changed_ && step_ < steps) {
-        set_step(step_ + 1);
-        failed_ = !step();
+        failed_ = !set_step(step_ + 1) || !step();
         const std::uint64_t distinct = rewriter_.modules().size();
         gave_up_ = !failed_ && distinct >= gives_up_from_ && little_repeats(distinct, word_.size());
         if (gave_up_) return false;
@@ -42,15 +44,16 @@ bool LsysDeriver::derive_to(unsigned steps) {
     return !failed_;
 }
 
-void LsysDeriver::set_step(unsigned step) {
+bool LsysDeriver::set_step(unsigned step) {
     step_ = step;
     rewriter_.set_birth(step);
     decomposer_.set_step(step);
     successors_.begin_step(step);
+    return !ordered_ || ordered_->begin_step(step, random_.sequence(step));
 }
 
 bool LsysDeriver::begin() {
-    set_step(0);
+    if (!set_step(0)) return false;
     auto axiom = rewriter_.axiom();
     if (!axiom) return false;
     word_ = std::move(*axiom);
@@ -59,18 +62,31 @@ bool LsysDeriver::begin() {
 }
 
 bool LsysDeriver::step() {
-    const std::optional<std::uint64_t> length = successors_.is_plain() ? count() : choose();
+    if (successors_.sees_word()) matcher_.look_at(word_);
+    if (!(ordered_ ? rewrite_in_order() : rewrite()) || !finish_step()) return false;
+    // Without chance, a word that a step leaves as it was stays so for ever; next_ is the word before.
+    changed_ = ordered_ || stage_ || successors_.is_stochastic() || decomposer_.varies() || is_timed_ ||
+               word_ != next_;
+    return true;
+}
+
+bool LsysDeriver::rewrite() {
+    const std::optional<std::uint64_t> length = successors_.is_plain() ? count() : choose_runs();
     if (!length || !is_short_enough(*length)) return false;
     gather(*length);
-    if (decomposer_.varies() && !decompose()) return false;
-    if (!finish_step()) return false;
-    // Without chance, a word that a step leaves as it was stays so for ever; next_ is the word before.
-    changed_ = stage_ || successors_.is_stochastic() || decomposer_.varies() || is_timed_ || word_ != next_;
-    return true;
+    return !decomposer_.varies() || decompose();
+}
+
+bool LsysDeriver::rewrite_in_order() {
+    next_.clear();
+    const bool rewritten = ordered_->rewrite(word_, next_);
+    word_.swap(next_);
+    return rewritten;
 }
 
 bool LsysDeriver::finish_step() {
     if (has_cuts_) cut_branches(rewriter_.grammar(), rewriter_.modules(), word_);
+    if (ordered_ && !ordered_->end_step(step_ == steps_)) return false;
     return !stage_ || stage_(step_, word_);
 }
 
@@ -87,8 +103,7 @@ std::optional<std::uint64_t> LsysDeriver::count() {
 }
 
 /// The length of the next word, of a grammar with chance or contexts; leaves the runs in chosen_.
-std::optional<std::uint64_t> LsysDeriver::choose() {
-    if (successors_.sees_word()) matcher_.look_at(word_);
+std::optional<std::uint64_t> LsysDeriver::choose_runs() {
     const CounterRandom random = random_.sequence(step_);
     chosen_.clear();
     chosen_.reserve(word_.size());
@@ -122,7 +137,9 @@ void LsysDeriver::gather(std::uint64_t length) {
 
 bool LsysDeriver::decompose() {
     ModuleString decomposed;
-    if (!decomposer_.run(word_, random_.sequence(step_).sequence(decomposing), decomposed)) return false;
+    if (ordered_ ? !ordered_->decompose(word_, decomposed)
+                 : !decomposer_.run(word_, random_.sequence(step_).sequence(decomposing), decomposed))
+        return false;
     word_ = std::move(decomposed);
     return is_short_enough(word_.size());
 }

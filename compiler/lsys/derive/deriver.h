@@ -6,6 +6,7 @@
 
 #include "compiler/lsys/derive/context.h"
 #include "compiler/lsys/derive/decompose.h"
+#include "compiler/lsys/derive/ordered.h"
 #include "compiler/lsys/derive/rewriter.h"
 #include "compiler/lsys/derive/successors.h"
 #include "compiler/lsys/derive/word.h"
@@ -29,7 +30,8 @@ inline bool little_repeats(std::uint64_t kept, std::uint64_t all) {
 /// Derives the words of a grammar. In each step all modules are replaced at once, from left to right, by the
 /// first production that fits, contexts before others, or by chance; a module that none fits stays. A
 /// production that rewrites several modules passes over them. The axiom and the result
-/// of each step are decomposed, and lose what stands behind a `%` in its branch.
+/// of each step are decomposed, and lose what stands behind a `%` in its branch. Where the order of the
+/// modules counts (LsysGrammar::in_order), they are replaced one after the other.
 class LsysDeriver {
   public:
     /// Both must outlive this. Requires max_modules <= max_word_modules.
@@ -37,9 +39,10 @@ class LsysDeriver {
                 std::uint64_t max_modules);
 
     /// The word after this many steps; its modules are in the rewriter's table. What a module becomes by
-    /// chance depends on the seed, the step and the module's position alone. Nothing after an error, which is
-    /// reported once; a step whose word would have more than max_modules is an error, found before the word
-    /// takes memory. O(modules of all words), and O(modules * patterns) for contexts.
+    /// chance depends on the seed, the step and the module's position alone, unless order counts. Nothing
+    /// after an error, which is reported once; a step whose word would have more than max_modules is an
+    /// error, found before the word takes memory. O(modules of all words), and O(modules * patterns) for
+    /// contexts.
     std::optional<ModuleString> derive(unsigned steps);
 
     /// Sets the stage that gets the words between the steps.
@@ -53,10 +56,12 @@ class LsysDeriver {
   private:
     bool derive_to(unsigned steps);
     bool begin();
-    void set_step(unsigned step);
+    bool set_step(unsigned step);
     bool step();
+    bool rewrite();
+    bool rewrite_in_order();
     std::optional<std::uint64_t> count();
-    std::optional<std::uint64_t> choose();
+    std::optional<std::uint64_t> choose_runs();
     void gather(std::uint64_t length);
     bool decompose();
     bool finish_step();
@@ -69,6 +74,7 @@ class LsysDeriver {
     LsysDecomposer decomposer_;
     LsysSuccessors successors_;
     ContextMatcher matcher_;
+    std::optional<LsysOrderedRewriter> ordered_; ///< where order counts
     LsysStage stage_;
     bool has_cuts_ = false;
     bool is_timed_ = false; ///< a word may go on after a step that left it as it was
@@ -76,7 +82,8 @@ class LsysDeriver {
     std::uint64_t gives_up_from_ = UINT64_MAX;
     bool gave_up_ = false;
 
-    unsigned step_ = 0; ///< 0: the axiom
+    unsigned steps_ = 0; ///< of the derivation
+    unsigned step_ = 0;  ///< 0: the axiom
     ModuleString word_;
     ModuleString next_;
     std::vector<RunId> chosen_; ///< for word_, from left to right

@@ -107,18 +107,12 @@ bool LsysQueries::meet(std::uint32_t step, ModuleId module, std::uint32_t birth,
                               diagnostics_);
     const bool by_chance = std::ranges::any_of(
         *alternatives, [](const Alternative& alternative) { return alternative.rule->is_random(); });
-    const double share = by_chance ? CounterRandom::unit(random_.sequence(step)(chosen_++)) : 0;
-    const ChosenAlternative chosen = alternative_at(*alternatives, share);
-    Level level;
-    if (chosen.alternative->rule->draws > 0) {
-        auto drawn = rewriter_.draw(*chosen.alternative, module, moment, chosen.within);
-        if (!drawn) return false;
-        level.string = std::move(*drawn);
-    } else {
-        level.string = chosen.alternative->successor;
-    }
-    levels_.push_back(std::move(level));
-    return true;
+    const std::uint64_t draw = by_chance ? random_.sequence(step)(chosen_++) : 0;
+    const Winner<Alternative> chosen = choose(alternatives->data(), draw);
+    const ModuleString* const successor =
+        rewriter_.successor(*chosen.entrant, module, moment, chosen.even_set());
+    if (successor) levels_.push_back({*successor});
+    return successor != nullptr;
 }
 
 bool LsysQueries::step_over(ModuleId module, std::size_t at, bool in_word) {

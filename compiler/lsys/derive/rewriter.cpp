@@ -24,18 +24,6 @@ constexpr std::size_t most_timed = 1u << 22;
 
 } // namespace
 
-ChosenAlternative alternative_at(const std::vector<Alternative>& alternatives, double share) {
-    ChosenAlternative chosen{&alternatives.front()};
-    for (const Alternative& alternative : alternatives) {
-        if (alternative.probability <= 0) continue;
-        chosen = {&alternative, share / alternative.probability};
-        share -= alternative.probability;
-        if (share < 0) break;
-    }
-    chosen.within = std::clamp(chosen.within, 0.0, std::nextafter(1.0, 0.0));
-    return chosen;
-}
-
 std::optional<ModuleString> LsysRewriter::axiom() {
     ModuleString string;
     if (!append(grammar_.axiom, nullptr, {}, cells(RuleKind::produce, 0), string)) return std::nullopt;
@@ -102,10 +90,12 @@ std::uint32_t LsysRewriter::find_timed(RuleKind kind, ModuleId module, Moment mo
 }
 
 std::uint32_t LsysRewriter::compute(RuleKind kind, ModuleId module, const Moment& moment) {
-    const auto& rules = grammar_.candidates(kind, modules_.symbol(module));
-    if (rules.empty()) return none;
+    if (!grammar_.has_rules(kind, modules_.symbol(module))) return none;
+    const std::vector<double> values = parameters(module);
     std::vector<Alternative> found;
-    if (!collect(rules, module, moment, found)) {
+    if (!compete(kind, modules_.symbol(module), values.size(), found, [&](Alternative& alternative) {
+            return alternative.rule->sees_word() ? Fit::no : apply(alternative, values, moment);
+        })) {
         failed_ = true;
         return error;
     }
@@ -114,30 +104,19 @@ std::uint32_t LsysRewriter::compute(RuleKind kind, ModuleId module, const Moment
     return static_cast<std::uint32_t>(alternatives_.size() - 1);
 }
 
-bool LsysRewriter::collect(const std::vector<std::uint32_t>& rules, ModuleId module, const Moment& moment,
-                           std::vector<Alternative>& found) {
+/// A copy: interning modules moves those of the table.
+std::vector<double> LsysRewriter::parameters(ModuleId module) const {
     const auto parameters = modules_.parameters(module);
-    const std::vector<double> values(parameters.begin(), parameters.end());
-    const auto first = try_rules(rules, values.size(), [&](const LsysRule& rule) {
-        if (rule.sees_word()) return Fit::no;
-        Alternative alternative;
-        const Fit fit = apply(rule, values, moment, alternative);
-        if (fit == Fit::yes) found.push_back(std::move(alternative));
-        return fit;
-    });
-    if (!first) return false;
-    return !*first || !(*first)->probability || normalise(found, **first);
+    return {parameters.begin(), parameters.end()};
 }
 
-std::optional<ModuleString> LsysRewriter::draw(const Alternative& alternative, ModuleId module,
-                                               const Moment& moment, double within) {
-    const auto parameters = modules_.parameters(module);
-    const std::vector<double> values(parameters.begin(), parameters.end());
-    const auto set = std::min(draw_sets - 1, static_cast<std::uint32_t>(within * draw_sets));
-    ModuleString string;
-    if (append_successor(*alternative.rule, values, moment, set, string)) return string;
+const ModuleString* LsysRewriter::successor(const Alternative& alternative, ModuleId module,
+                                            const Moment& moment, std::uint32_t set) {
+    if (alternative.rule->draws == 0) return &alternative.successor;
+    drawn_.clear();
+    if (append_successor(*alternative.rule, parameters(module), moment, set, drawn_)) return &drawn_;
     failed_ = true;
-    return std::nullopt;
+    return nullptr;
 }
 
 /// Calls come one after the other, and of each the sets: a number in every 64th part of [0, 1). The first
@@ -160,16 +139,7 @@ const std::vector<double>& LsysRewriter::draws_of(const LsysRule& rule) {
     return draws;
 }
 
-bool LsysRewriter::normalise(std::vector<Alternative>& found, const LsysRule& first) {
-    double sum = 0;
-    for (const Alternative& alternative : found)
-        sum += alternative.probability;
-    if (!sums_to_one(sum, first)) return false;
-    for (Alternative& alternative : found)
-        alternative.probability /= sum;
-    return true;
-}
-
+/// Whether the probabilities of competing rules sum to 1 as closely as books print them; if not, reports it.
 bool LsysRewriter::sums_to_one(double sum, const LsysRule& first) {
     if (std::abs(sum - 1) <= probability_slack) return true;
     diagnostics_
@@ -180,21 +150,14 @@ bool LsysRewriter::sums_to_one(double sum, const LsysRule& first) {
     return false;
 }
 
-Fit LsysRewriter::apply(const LsysRule& rule, std::span<const double> values, const Moment& moment,
-                        Alternative& result) {
+Fit LsysRewriter::apply(Alternative& alternative, std::span<const double> values, const Moment& moment) {
+    const LsysRule& rule = *alternative.rule;
     const auto slots = slots_of(rule, values, moment);
     if (!slots) return Fit::error;
-    const std::optional<bool> fits = holds(rule, moment, *slots);
-    if (!fits) return Fit::error;
-    if (!*fits) return Fit::no;
-    const std::optional<double> chance = probability_of(rule, moment, *slots);
-    if (!chance) return Fit::error;
-    result.rule = &rule;
-    result.probability = *chance;
-    result.successor.clear();
-    if (rule.draws > 0) return Fit::yes;
+    const Fit fit = enter(alternative, moment, *slots);
+    if (fit != Fit::yes || rule.draws > 0) return fit;
     const bool applied = rule.is_plain() || apply_slots(rule, moment, 0, slots_);
-    return applied && append_by(rule, moment, *slots, result.successor) ? Fit::yes : Fit::error;
+    return applied && append_by(rule, moment, *slots, alternative.successor) ? Fit::yes : Fit::error;
 }
 
 LsysMachine::State LsysRewriter::state_of(const LsysRule& rule, const Moment& moment,
@@ -235,37 +198,29 @@ LsysRewriter::slots_of(const LsysRule& rule, std::span<const double> values, con
     return slots_;
 }
 
-bool LsysRewriter::condition_holds(const LsysRule& rule, std::span<const double> values,
-                                   const Moment& moment) {
-    if (!rule.condition) return true;
-    const auto slots = slots_of(rule, values, moment);
-    return slots && holds(rule, moment, *slots).value_or(false);
-}
-
-std::optional<bool> LsysRewriter::holds(const LsysRule& rule, const Moment& moment,
-                                        std::span<const double> slots) {
-    if (!rule.condition) return true;
-    const std::optional<double> truth = value(rule.condition->code, rule, moment, slots);
-    if (!truth) return std::nullopt;
-    return *truth != 0;
-}
-
-std::optional<double> LsysRewriter::probability(const LsysRule& rule, std::span<const double> values,
-                                                const Moment& moment) {
-    if (!rule.probability) return 1;
-    const auto slots = slots_of(rule, values, moment);
-    if (!slots) return std::nullopt;
-    return probability_of(rule, moment, *slots);
-}
-
-std::optional<double> LsysRewriter::probability_of(const LsysRule& rule, const Moment& moment,
-                                                   std::span<const double> slots) {
-    if (!rule.probability) return 1;
-    const std::optional<double> chance = value(*rule.probability, rule, moment, slots);
-    if (!chance || *chance >= 0) return chance;
+Fit LsysRewriter::enter(Competitor& competitor, const Moment& moment, std::span<const double> slots) {
+    const LsysRule& rule = *competitor.rule;
+    const std::span<const double> known = cells(rule.kind, moment.step);
+    if (rule.condition) {
+        const std::optional<double> truth = value(rule.condition->code, &rule, slots, known);
+        if (!truth) return Fit::error;
+        if (*truth == 0) return Fit::no;
+    }
+    if (!rule.probability) return Fit::yes;
+    const std::optional<double> chance = value(*rule.probability, &rule, slots, known);
+    if (!chance) return Fit::error;
+    competitor.probability = *chance;
+    if (*chance >= 0) return Fit::yes;
     diagnostics_.error(rule.source->probability->span,
                        fmt::format("a probability must not be negative, but is {}", shortest(*chance)));
-    return std::nullopt;
+    return Fit::error;
+}
+
+Fit LsysRewriter::enter_values(Competitor& competitor, std::span<const double> values, const Moment& moment) {
+    const LsysRule& rule = *competitor.rule;
+    if (!rule.condition && !rule.probability) return Fit::yes;
+    const auto slots = slots_of(rule, values, moment);
+    return slots ? enter(competitor, moment, *slots) : Fit::error;
 }
 
 bool LsysRewriter::append_successor(const LsysRule& rule, std::span<const double> values,
@@ -280,12 +235,11 @@ bool LsysRewriter::append_by(const LsysRule& rule, const Moment& moment, std::sp
     return append(rule.successor, &rule, slots, cells(rule.kind, moment.step), string);
 }
 
-std::optional<double> LsysRewriter::value(const ExpressionCode& code, const LsysRule& rule,
-                                          const Moment& moment, std::span<const double> slots) {
-    const std::span<const double> values = cells(rule.kind, moment.step);
-    const std::optional<double> result = code.value(slots, values);
-    if (!result) code.report(slots, grammar_.lets, rule.slots, diagnostics_, values);
-    return result;
+void LsysRewriter::report(const ExpressionCode& code, const LsysRule* rule, std::span<const double> slots,
+                          std::span<const double> cells) {
+    code.report(slots, grammar_.lets,
+                rule ? std::span<const std::string_view>(rule->slots) : std::span<const std::string_view>(),
+                diagnostics_, cells);
 }
 
 bool LsysRewriter::append(const std::vector<LsysTemplate>& templates, const LsysRule* rule,
@@ -296,14 +250,8 @@ bool LsysRewriter::append(const std::vector<LsysTemplate>& templates, const Lsys
     for (const LsysTemplate& module : templates) {
         arguments_.clear();
         for (const ExpressionCode& code : module.parameters) {
-            const std::optional<double> argument = code.value(slots, cells);
-            if (!argument) {
-                code.report(slots, grammar_.lets,
-                            rule ? std::span<const std::string_view>(rule->slots)
-                                 : std::span<const std::string_view>(),
-                            diagnostics_, cells);
-                return false;
-            }
+            const std::optional<double> argument = value(code, rule, slots, cells);
+            if (!argument) return false;
             arguments_.push_back(*argument);
         }
         const bool stamped = stamps && grammar_.ages[module.symbol];

@@ -6,11 +6,13 @@
 #include <deque>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "compiler/lsys/compile/grammar.h"
 #include "compiler/lsys/compile/module_table.h"
 #include "compiler/lsys/compile/program.h"
+#include "compiler/lsys/derive/competition.h"
 #include "compiler/lsys/derive/variables.h"
 #include "compiler/support/control.h"
 #include "compiler/support/id_table.h"
@@ -18,21 +20,10 @@
 
 namespace graftal {
 
-/// A rule that a module may be rewritten by, and its probability.
-struct Alternative {
-    const LsysRule* rule = nullptr;
-    double probability = 1;
-    ModuleString successor; ///< empty where the rule draws random numbers: see LsysRewriter::draw()
+/// A rule that a module may be rewritten by.
+struct Alternative : Competitor {
+    ModuleString successor; ///< empty where the rule draws random numbers: see LsysRewriter::successor()
 };
-
-struct ChosenAlternative {
-    const Alternative* alternative = nullptr;
-    double within = 0; ///< [0, 1): where in the alternative the number fell
-};
-
-/// The alternative in which a number of [0, 1) falls, laid end to end by their probabilities. Requires some;
-/// one of no probability is not chosen.
-ChosenAlternative alternative_at(const std::vector<Alternative>& alternatives, double share);
 
 /// When rules are tried; for those that read it.
 struct Moment {
@@ -45,11 +36,6 @@ inline Moment moment_of(std::uint32_t step, std::uint32_t birth) {
     return {static_cast<double>(step),
             birth == ModuleTable::no_birth ? 0.0 : static_cast<double>(step - birth)};
 }
-
-/// Number of sets that a rule's random numbers are drawn in, all of a set together. For each call the values
-/// are spread evenly over the distribution (a Latin hypercube): mean and variance over the sets are those of
-/// the distribution. A power of two.
-inline constexpr std::uint32_t draw_sets = 64;
 
 /// The result of trying a rule on a module.
 enum class Fit : std::uint8_t { no, yes, error };
@@ -101,25 +87,22 @@ class LsysRewriter {
     std::optional<ModuleString> axiom();
 
     /// The alternatives of a module by itself: productions that see more of the word are passed over.
-    /// Their probabilities sum to 1; none: no production applies, and the module stays. Null after an error
+    /// They share all draws; none: no production applies, and the module stays. Null after an error
     /// (a division by zero, probabilities that do not sum to 1); reported once. Valid as long as this.
     const std::vector<Alternative>* alternatives(RuleKind kind, ModuleId module, const Moment& moment);
 
     /// Whether alternatives() would give any, or an error.
     bool is_rewritten(RuleKind kind, ModuleId module, const Moment& moment);
 
-    /// The successor of an alternative of a module that draws random numbers: of the sets, the one at
-    /// `within`. Nothing after an error.
-    std::optional<ModuleString> draw(const Alternative& alternative, ModuleId module, const Moment& moment,
-                                     double within);
+    /// The successor of an alternative of a module; its random numbers are those of one of the draw_sets.
+    /// Valid until the next call; null after an error.
+    const ModuleString* successor(const Alternative& alternative, ModuleId module, const Moment& moment,
+                                  std::uint32_t set);
 
     /// From now on modules of `ages` symbols are told apart by the step in which they came into being; but
     /// not what they are drawn as. `no_birth`: no longer.
     void set_birth(std::uint32_t step) { birth_ = step; }
 
-    /// Whether the rule's condition holds for the values of its variables, those of contexts included. False
-    /// after an error.
-    bool condition_holds(const LsysRule& rule, std::span<const double> values, const Moment& moment);
     /// The steps of applying a rule, for callers that keep its slots. `slots` has the values of its
     /// variables, from `first` on and last, and gets what else the rule's condition knows. Once applied, it
     /// gets one of the draw_sets, and the assignments of the second block. False after an error.
@@ -127,10 +110,10 @@ class LsysRewriter {
                    std::size_t first = 0);
     bool apply_slots(const LsysRule& rule, const Moment& moment, std::uint32_t set,
                      std::vector<double>& slots, std::size_t first = 0);
-    /// Whether the condition of a rule holds whose slots are ready; nothing after an error.
-    std::optional<bool> holds(const LsysRule& rule, const Moment& moment, std::span<const double> slots);
-    std::optional<double> probability_of(const LsysRule& rule, const Moment& moment,
-                                         std::span<const double> slots);
+    /// Tries the condition of a rule whose slots are ready. If it holds, sets the competitor's probability.
+    Fit enter(Competitor& competitor, const Moment& moment, std::span<const double> slots);
+    /// Tries the condition for the values of the rule's variables, those of contexts included.
+    Fit enter_values(Competitor& competitor, std::span<const double> values, const Moment& moment);
     bool append_by(const LsysRule& rule, const Moment& moment, std::span<const double> slots,
                    ModuleString& string);
 
@@ -142,27 +125,28 @@ class LsysRewriter {
     /// Adds the rule's successor to `string`, drawn by one of the draw_sets; false after an error.
     bool append_successor(const LsysRule& rule, std::span<const double> values, const Moment& moment,
                           std::uint32_t set, ModuleString& string);
-    /// 1 for a rule without.
-    std::optional<double> probability(const LsysRule& rule, std::span<const double> values,
-                                      const Moment& moment);
+    /// Tries the alternative's rule and, if it fits, says what it gives. Leaves random numbers to
+    /// successor().
+    Fit apply(Alternative& alternative, std::span<const double> values, const Moment& moment);
 
-    /// The three above at once: tries the rule and, if it fits, says what it gives. Leaves chance to draw().
-    Fit apply(const LsysRule& rule, std::span<const double> values, const Moment& moment,
-              Alternative& result);
-
-    /// Calls `apply(rule)`, which gives a Fit, for the rules that may rewrite a module of this many
-    /// parameters. The first that fits decides: without a probability it is applied; with one, all others
-    /// that fit and have one compete. Gives the first that fits, or null; nothing after an error.
-    template<typename Apply>
-    std::optional<const LsysRule*> try_rules(std::span<const std::uint32_t> rules, std::size_t arity,
-                                             const Apply& apply);
-
-    /// Whether the probabilities of competing rules sum to 1 as closely as books print them; if not, reports
-    /// it.
-    bool sums_to_one(double sum, const LsysRule& first);
+    /// The rules that may rewrite a module of this many parameters, as competitors that share all draws; none
+    /// if none fits. The first that fits decides: without a probability it is the only one; with one, all
+    /// others that fit and have one compete. Calls `enter(entrant)` for each, which gives a Fit and sets the
+    /// entrant's probability. False after an error.
+    template<typename Entrant, typename Enter>
+    bool compete(RuleKind kind, SymbolId symbol, std::size_t arity, std::vector<Entrant>& entrants,
+                 const Enter& enter);
 
     /// The random numbers of a rule: for each call one of each set, call by call.
     const std::vector<double>& draws_of(const LsysRule& rule);
+
+    /// The value of an expression of a rule, or of the axiom if that is null; nothing after an error.
+    std::optional<double> value(const ExpressionCode& code, const LsysRule* rule,
+                                std::span<const double> slots, std::span<const double> cells) {
+        const std::optional<double> result = code.value(slots, cells);
+        if (!result) report(code, rule, slots, cells);
+        return result;
+    }
 
     bool failed() const { return failed_; }
 
@@ -185,13 +169,12 @@ class LsysRewriter {
     std::uint32_t find(RuleKind kind, ModuleId module, const Moment& moment);
     std::uint32_t find_timed(RuleKind kind, ModuleId module, Moment moment, TimeMask reads);
     std::uint32_t compute(RuleKind kind, ModuleId module, const Moment& moment);
-    bool collect(const std::vector<std::uint32_t>& rules, ModuleId module, const Moment& moment,
-                 std::vector<Alternative>& found);
-    bool normalise(std::vector<Alternative>& found, const LsysRule& first);
+    std::vector<double> parameters(ModuleId module) const;
+    bool sums_to_one(double sum, const LsysRule& first);
     std::span<const double> known_cells(RuleKind kind, double step) const;
     LsysMachine::State state_of(const LsysRule& rule, const Moment& moment, std::span<double> slots);
-    std::optional<double> value(const ExpressionCode& code, const LsysRule& rule, const Moment& moment,
-                                std::span<const double> slots);
+    void report(const ExpressionCode& code, const LsysRule* rule, std::span<const double> slots,
+                std::span<const double> cells);
     std::optional<std::span<const double>> slots_of(const LsysRule& rule, std::span<const double> values,
                                                     const Moment& moment);
     bool append(const std::vector<LsysTemplate>& templates, const LsysRule* rule,
@@ -214,23 +197,32 @@ class LsysRewriter {
     std::vector<std::vector<double>> draws_; ///< of the rules, set by set
     std::vector<double> arguments_;
     std::vector<double> slots_;
+    ModuleString drawn_;
     bool failed_ = false;
 };
 
-template<typename Apply>
-std::optional<const LsysRule*> LsysRewriter::try_rules(std::span<const std::uint32_t> rules,
-                                                       std::size_t arity, const Apply& apply) {
-    const LsysRule* first = nullptr;
-    for (const std::uint32_t id : rules) {
+template<typename Entrant, typename Enter>
+bool LsysRewriter::compete(RuleKind kind, SymbolId symbol, std::size_t arity, std::vector<Entrant>& entrants,
+                           const Enter& enter) {
+    entrants.clear();
+    for (const std::uint32_t id : grammar_.candidates(kind, symbol)) {
         const LsysRule& rule = grammar_.rules[id];
-        if (rule.predecessor.arity != arity || (first && !rule.probability)) continue;
-        const Fit fit = apply(rule);
-        if (fit == Fit::error) return std::nullopt;
+        if (rule.predecessor.arity != arity || (!entrants.empty() && !rule.probability)) continue;
+        Entrant entrant;
+        entrant.rule = &rule;
+        const Fit fit = enter(entrant);
+        if (fit == Fit::error) return false;
         if (fit == Fit::no) continue;
-        if (!first) first = &rule;
-        if (!rule.probability) break;
+        entrants.push_back(std::move(entrant));
+        if (!rule.probability) return true;
     }
-    return first;
+    if (entrants.empty()) return true;
+    double sum = 0;
+    for (const Entrant& entrant : entrants)
+        sum += entrant.probability;
+    if (!sums_to_one(sum, *entrants.front().rule)) return false;
+    share_draws(entrants, sum);
+    return true;
 }
 
 } // namespace graftal

@@ -1,7 +1,6 @@
 #include "compiler/lsys/derive/stream.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "compiler/lsys/derive/word.h"
 
@@ -71,14 +70,8 @@ bool LsysStream::read_module(Frame& frame, Module& module) {
     module.span = frame.rule ? frame.rule->source->span : grammar_.source->axiom->span;
     for (const ExpressionCode& code : source.parameters) {
         const std::span<const double> slots = std::span(values_).subspan(frame.slots, frame.slot_count);
-        const std::optional<double> value = code.value(slots, frame.cells);
-        if (!value) {
-            code.report(slots, grammar_.lets,
-                        frame.rule ? std::span<const std::string_view>(frame.rule->slots)
-                                   : std::span<const std::string_view>(),
-                        diagnostics_, frame.cells);
-            return false;
-        }
+        const std::optional<double> value = rewriter_.value(code, frame.rule, slots, frame.cells);
+        if (!value) return false;
         values_.push_back(unrounded(*value));
     }
     return true;
@@ -92,7 +85,7 @@ bool LsysStream::meet(const Module& module, std::uint32_t word) {
             const Moment moment = moment_of(word + 1, module.birth);
             const std::uint64_t draw = chooses_ ? random_.sequence(word + 1)(in_word_[word]) : 0;
             Chosen chosen;
-            if (!choose(RuleKind::produce, module, moment, draw, chosen)) return false;
+            if (!choose_rule(RuleKind::produce, module, moment, draw, chosen)) return false;
             if (!chosen.rule && !waits) break; // a module that none fits now, none will fit later
             if (++in_word_[word] > options_.max_modules)
                 return refuse_length(grammar_, options_.max_modules, word, diagnostics_);
@@ -120,7 +113,7 @@ bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
         moment = {moment.step + options_.share, moment.age + options_.share};
         Chosen chosen;
         const std::uint64_t draw = random_.sequence(interpreting)(interpreted_);
-        if (!choose(RuleKind::interpret, module, moment, draw, chosen)) return false;
+        if (!choose_rule(RuleKind::interpret, module, moment, draw, chosen)) return false;
         if (chosen.rule) {
             if (chosen.rule->is_random()) ++interpreted_;
             if (repeated < most_interpretations) {
@@ -160,48 +153,19 @@ bool LsysStream::push(const Chosen& chosen, const Module& module, const Moment& 
     return true;
 }
 
-/// Chooses as LsysSuccessors does, to the last bit. No rule: none fits. False after an error.
-bool LsysStream::choose(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
-                        Chosen& chosen) {
+/// False after an error.
+bool LsysStream::choose_rule(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
+                             Chosen& chosen) {
     const std::span<const double> values = parameters(module);
-    competitors_.clear();
-    const auto first = rewriter_.try_rules(
-        grammar_.candidates(kind, module.symbol), values.size(), [&](const LsysRule& rule) {
-            if (rule.sees_word()) return Fit::no;
-            if (rule.condition) {
-                const std::size_t errors = diagnostics_.error_count();
-                if (!rewriter_.condition_holds(rule, values, moment))
-                    return diagnostics_.error_count() > errors ? Fit::error : Fit::no;
-            }
-            double probability = 1;
-            if (rule.probability) {
-                const std::optional<double> known = rewriter_.probability(rule, values, moment);
-                if (!known) return Fit::error;
-                probability = *known;
-            }
-            competitors_.push_back({&rule, probability});
-            return Fit::yes;
-        });
-    if (!first) return false;
-    if (!*first) return true;
-    chosen.rule = *first;
-    if (!chosen.rule->is_random()) return true;
-    double sum = 0;
-    for (const Competitor& competitor : competitors_)
-        sum += competitor.probability;
-    if (!rewriter_.sums_to_one(sum, **first)) return false;
-    double share = 0;
-    std::uint64_t below = 0, upto = 0;
-    for (const Competitor& competitor : competitors_) {
-        if (competitor.probability == 0) continue;
-        below = upto;
-        share += competitor.probability / sum;
-        const double scaled = std::ldexp(share, 64);
-        upto = scaled < 0x1p64 ? static_cast<std::uint64_t>(scaled) : UINT64_MAX;
-        chosen.rule = competitor.rule;
-        if (draw <= upto) break;
-    }
-    chosen.set = static_cast<std::uint32_t>(CounterRandom::scrambled(draw - below) % draw_sets);
+    if (!rewriter_.compete(kind, module.symbol, values.size(), competitors_, [&](Competitor& competitor) {
+            return competitor.rule->sees_word() ? Fit::no
+                                                : rewriter_.enter_values(competitor, values, moment);
+        }))
+        return false;
+    if (competitors_.empty()) return true;
+    const Winner<Competitor> winner = choose(competitors_.data(), draw);
+    chosen.rule = winner.entrant->rule;
+    if (chosen.rule->draws > 0) chosen.set = winner.scattered_set();
     return true;
 }
 

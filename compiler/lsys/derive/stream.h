@@ -69,14 +69,10 @@ class LsysStream {
         std::uint32_t birth = 0;
         Span span;
     };
-    /// A rule and the random numbers for it.
+    /// A rule and the set of random numbers for it.
     struct Chosen {
-        const LsysRule* rule = nullptr;
+        const LsysRule* rule = nullptr; ///< null: none fits
         std::uint32_t set = 0;
-    };
-    struct Competitor {
-        const LsysRule* rule;
-        double probability;
     };
 
     bool run();
@@ -86,8 +82,8 @@ class LsysStream {
     bool draw(const FoldedWord& word, std::span<const ModuleId> string);
     bool draw_bracket(TurtleCommand command);
     bool push(const Chosen& chosen, const Module& module, const Moment& moment, Frame frame);
-    bool choose(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
-                Chosen& chosen);
+    bool choose_rule(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
+                     Chosen& chosen);
     bool count_from(std::uint32_t word);
     std::span<const double> parameters(const Module& module) const {
         return std::span(values_).last(module.arity);

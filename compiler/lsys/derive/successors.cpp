@@ -1,7 +1,6 @@
 #include "compiler/lsys/derive/successors.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -67,12 +66,12 @@ LsysSuccessors::Entry LsysSuccessors::compute(ModuleId module) {
 
 /// The entry of a module: where contexts decide, the run that leaves the module as it is, with the mark.
 LsysSuccessors::Entry LsysSuccessors::compute_entry(ModuleId module) {
-    std::optional<const LsysRule*> first = nullptr;
     const bool has_contexts = contexts(module).sight != Sight::none;
-    if (!has_contexts)
-        first = compete(module, [&](const LsysRule& rule) { return outcome(rule, std::span(&module, 1)); });
-    if (!first) return unknown;
-    if (*first) return entry_of(*first, 0, choices_);
+    if (!has_contexts) {
+        if (!compete(module, [&](Outcome& outcome) { return enter(outcome, std::span(&module, 1)); }))
+            return unknown;
+        if (!competing_.empty()) return entry_of_competing(choices_);
+    }
     const auto run = add_run(std::span(&module, 1), rewriter_.grammar().source->name.span);
     if (!run) return unknown;
     return has_contexts ? *run | mark : *run;
@@ -81,39 +80,34 @@ LsysSuccessors::Entry LsysSuccessors::compute_entry(ModuleId module) {
 std::optional<LsysSuccessors::Replacement> LsysSuccessors::choose(ModuleId module, Entry entry,
                                                                   std::uint64_t draw, ContextMatcher& matcher,
                                                                   std::uint32_t position) {
-    const std::vector<Choice>* choices = &choices_;
+    const std::vector<Outcome>* choices = &choices_;
     std::uint32_t modules = 1;
     const Sight sight = contexts(module).sight;
     if (sight == Sight::near) {
         entry = entry_nearby(module, entry, matcher, position);
     } else if (sight == Sight::far) {
-        const auto first = compete_in_context(module, matcher, position);
-        chances_.clear();
-        entry = first ? entry_of(*first, entry & ~mark, chances_) : unknown;
-        if (first && *first) modules = (*first)->length();
-        choices = &chances_;
+        choices_here_.clear();
+        entry = entry_in_context(module, entry, matcher, position, choices_here_);
+        if (!competing_.empty()) modules = competing_.front().rule->length();
+        choices = &choices_here_;
     }
     if (is_run(entry)) return Replacement{entry, modules};
     if (entry == unknown) return std::nullopt;
-    const Choice* choice = choices->data() + (entry & ~mark);
-    std::uint64_t below = 0;
-    while (draw > choice->upto)
-        below = (choice++)->upto;
-    const std::optional<RunId> run = run_of(*choice, draw - below);
+    const Winner<Outcome> winner = graftal::choose(choices->data() + (entry & ~mark), draw);
+    const std::optional<RunId> run = run_of(winner);
     if (!run) return std::nullopt;
-    return Replacement{*run, choice->modules};
+    return Replacement{*run, winner.entrant->rule->length()};
 }
 
-/// The run of a choice. Chance within a choice has nothing to do with the choice itself.
-std::optional<RunId> LsysSuccessors::run_of(const Choice& choice, std::uint64_t draw) {
+std::optional<RunId> LsysSuccessors::run_of(const Winner<Outcome>& winner) {
     constexpr RunId unknown_run = UINT32_MAX;
-    if (!choice.draws) return choice.run;
-    const LsysRule& rule = *choice.draws;
-    const auto id = static_cast<std::uint32_t>(&rule - rewriter_.grammar().rules.data());
-    const auto set = static_cast<std::uint32_t>(CounterRandom::scrambled(draw) % draw_sets);
+    const Outcome& outcome = *winner.entrant;
+    const LsysRule& rule = *outcome.rule;
+    if (rule.draws == 0) return outcome.run;
+    const std::uint32_t set = winner.scattered_set();
     forget_if_many(drawn_);
-    const std::span<const ModuleId> bound = std::span(bounds_).subspan(choice.bound, choice.bound_count);
-    RunId& known = drawn_.find_or_add(id * draw_sets + set, bound, unknown_run);
+    const std::span<const ModuleId> bound = std::span(bounds_).subspan(outcome.bound, outcome.bound_count);
+    RunId& known = drawn_.find_or_add(id_of(rule) * draw_sets + set, bound, unknown_run);
     if (known != unknown_run) return known;
     values_of(bound);
     ModuleString successor;
@@ -133,64 +127,43 @@ LsysSuccessors::Entry LsysSuccessors::entry_nearby(ModuleId module, Entry entry,
     forget_if_many(nearby_);
     Entry& known = nearby_.find_or_add(0, key, unknown);
     if (known != unknown) return known;
-    const auto first = compete_in_context(module, matcher, position);
-    return known = first ? entry_of(*first, entry & ~mark, choices_) : unknown;
+    return known = entry_in_context(module, entry, matcher, position, choices_);
 }
 
-std::optional<const LsysRule*> LsysSuccessors::compete_in_context(ModuleId module, ContextMatcher& matcher,
-                                                                  std::uint32_t position) {
-    return compete(module, [&](const LsysRule& rule) {
-        bound_.assign(1, module);
-        if (rule.sees_word() && !matcher.matches(rule, position, bound_)) return Outcome{};
-        return known_outcome(rule, bound_);
-    });
+LsysSuccessors::Entry LsysSuccessors::entry_in_context(ModuleId module, Entry entry, ContextMatcher& matcher,
+                                                       std::uint32_t position,
+                                                       std::vector<Outcome>& choices) {
+    if (!compete(module, [&](Outcome& outcome) {
+            bound_.assign(1, module);
+            if (outcome.rule->sees_word() && !matcher.matches(*outcome.rule, position, bound_))
+                return Fit::no;
+            return enter_known(outcome, bound_);
+        }))
+        return unknown;
+    return competing_.empty() ? entry & ~mark : entry_of_competing(choices);
 }
 
-/// The entry that the rules in competing_ give a module; `stays` if there are none.
-LsysSuccessors::Entry LsysSuccessors::entry_of(const LsysRule* first, RunId stays,
-                                               std::vector<Choice>& choices) {
-    if (!first) return stays;
-    if (!first->is_random()) return competing_.front().run;
+/// The entry that the rules in competing_ give a module.
+LsysSuccessors::Entry LsysSuccessors::entry_of_competing(std::vector<Outcome>& choices) const {
+    if (!competing_.front().rule->is_random()) return competing_.front().run;
     const auto entry = static_cast<Entry>(choices.size() | mark);
-    return add_choices(*first, choices) ? entry : unknown;
+    choices.insert(choices.end(), competing_.begin(), competing_.end());
+    return entry;
 }
 
 /// Leaves what the rules that fit give in competing_.
-template<typename OutcomeOf>
-std::optional<const LsysRule*> LsysSuccessors::compete(ModuleId module, const OutcomeOf& outcome_of) {
+template<typename Enter> bool LsysSuccessors::compete(ModuleId module, const Enter& enter) {
     const ModuleTable& modules = rewriter_.modules();
-    competing_.clear();
-    return rewriter_.try_rules(rewriter_.grammar().candidates(RuleKind::produce, modules.symbol(module)),
-                               modules.parameters(module).size(), [&](const LsysRule& rule) {
-                                   const Outcome outcome = outcome_of(rule);
-                                   if (outcome.fit == Fit::yes) competing_.push_back(outcome);
-                                   return outcome.fit;
-                               });
+    return rewriter_.compete(RuleKind::produce, modules.symbol(module), modules.parameters(module).size(),
+                             competing_, enter);
 }
 
-bool LsysSuccessors::add_choices(const LsysRule& first, std::vector<Choice>& choices) {
-    double sum = 0;
-    for (const Outcome& outcome : competing_)
-        sum += outcome.probability;
-    if (!rewriter_.sums_to_one(sum, first)) return false;
-    double below = 0;
-    for (const Outcome& outcome : competing_) {
-        if (outcome.probability == 0) continue;
-        below += outcome.probability / sum;
-        const double upto = std::ldexp(below, 64);
-        choices.push_back({upto < 0x1p64 ? static_cast<std::uint64_t>(upto) : UINT64_MAX, outcome.run,
-                           outcome.draws, outcome.bound, outcome.bound_count, outcome.modules});
-    }
-    choices.back().upto = UINT64_MAX;
-    return true;
-}
-
-LsysSuccessors::Outcome LsysSuccessors::known_outcome(const LsysRule& rule, std::span<const ModuleId> bound) {
+Fit LsysSuccessors::enter_known(Outcome& outcome, std::span<const ModuleId> bound) {
     forget_if_many(outcomes_);
-    const auto id = static_cast<std::uint32_t>(&rule - rewriter_.grammar().rules.data());
-    Outcome& known = outcomes_.find_or_add(id, bound, {Fit::error});
-    if (known.fit == Fit::error) known = outcome(rule, bound);
-    return known;
+    Outcome& known = outcomes_.find_or_add(id_of(*outcome.rule), bound, outcome);
+    if (known.fit == Fit::error) known.fit = enter(known, bound);
+    outcome = known;
+    return outcome.fit;
 }
 
 /// Leaves the parameters of modules in values_.
@@ -202,24 +175,23 @@ void LsysSuccessors::values_of(std::span<const ModuleId> modules) {
     }
 }
 
-LsysSuccessors::Outcome LsysSuccessors::outcome(const LsysRule& rule, std::span<const ModuleId> bound) {
+Fit LsysSuccessors::enter(Outcome& outcome, std::span<const ModuleId> bound) {
     values_of(bound);
-    const Fit fit = rewriter_.apply(rule, values_, moment(bound.front()), alternative_);
-    if (fit != Fit::yes) return {fit};
+    const LsysRule& rule = *outcome.rule;
+    Alternative alternative{outcome, {}};
+    const Fit fit = rewriter_.apply(alternative, values_, moment(bound.front()));
+    if (fit != Fit::yes) return fit;
+    outcome.probability = alternative.probability;
     if (rule.draws > 0) {
+        outcome.bound = static_cast<std::uint32_t>(bounds_.size());
+        outcome.bound_count = static_cast<std::uint32_t>(bound.size());
         bounds_.insert(bounds_.end(), bound.begin(), bound.end());
-        const auto count = static_cast<std::uint32_t>(bound.size());
-        return {Fit::yes,
-                alternative_.probability,
-                0,
-                &rule,
-                static_cast<std::uint32_t>(bounds_.size()) - count,
-                count,
-                rule.length()};
+        return Fit::yes;
     }
-    const std::optional<RunId> run = add_successor(alternative_.successor, rule);
-    if (!run) return {Fit::error};
-    return {Fit::yes, alternative_.probability, *run, nullptr, 0, 0, rule.length()};
+    const std::optional<RunId> run = add_successor(alternative.successor, rule);
+    if (!run) return Fit::error;
+    outcome.run = *run;
+    return Fit::yes;
 }
 
 /// Decomposes the run for good where it can be decomposed in one way only.

@@ -59,24 +59,12 @@ class LsysSuccessors {
     void begin_step(std::uint32_t step);
 
   private:
-    /// A choice of chance: the first with draw <= upto, as probabilities are added up.
-    struct Choice {
-        std::uint64_t upto;
-        RunId run;
-        const LsysRule* draws = nullptr; ///< in place of the run: one that chance gives
-        std::uint32_t bound = 0;         ///< the rule's modules, in bounds_
-        std::uint32_t bound_count = 0;
-        std::uint32_t modules = 1; ///< that it replaces
-    };
     /// The result of trying a rule.
-    struct Outcome {
-        Fit fit = Fit::no;
-        double probability = 1;
-        RunId run = 0;
-        const LsysRule* draws = nullptr; ///< in place of the run
-        std::uint32_t bound = 0;
+    struct Outcome : Competitor {
+        Fit fit = Fit::error;    ///< in outcomes_; of others not known
+        RunId run = 0;           ///< of a rule without random numbers
+        std::uint32_t bound = 0; ///< of one with: its modules, in bounds_
         std::uint32_t bound_count = 0;
-        std::uint32_t modules = 1;
     };
     /// The reach of the contexts of a symbol's productions.
     enum class Sight : std::uint8_t {
@@ -97,16 +85,17 @@ class LsysSuccessors {
     Entry compute(ModuleId module);
     Entry compute_entry(ModuleId module);
     Entry entry_nearby(ModuleId module, Entry entry, ContextMatcher& matcher, std::uint32_t position);
-    std::optional<const LsysRule*> compete_in_context(ModuleId module, ContextMatcher& matcher,
-                                                      std::uint32_t position);
-    Entry entry_of(const LsysRule* first, RunId stays, std::vector<Choice>& choices);
-    template<typename OutcomeOf>
-    std::optional<const LsysRule*> compete(ModuleId module, const OutcomeOf& outcome_of);
-    bool add_choices(const LsysRule& first, std::vector<Choice>& choices);
-    std::optional<RunId> run_of(const Choice& choice, std::uint64_t draw);
+    Entry entry_in_context(ModuleId module, Entry entry, ContextMatcher& matcher, std::uint32_t position,
+                           std::vector<Outcome>& choices);
+    Entry entry_of_competing(std::vector<Outcome>& choices) const;
+    template<typename Enter> bool compete(ModuleId module, const Enter& enter);
+    std::optional<RunId> run_of(const Winner<Outcome>& winner);
     Moment moment(ModuleId module) const;
-    Outcome known_outcome(const LsysRule& rule, std::span<const ModuleId> bound);
-    Outcome outcome(const LsysRule& rule, std::span<const ModuleId> bound);
+    Fit enter_known(Outcome& outcome, std::span<const ModuleId> bound);
+    Fit enter(Outcome& outcome, std::span<const ModuleId> bound);
+    std::uint32_t id_of(const LsysRule& rule) const {
+        return static_cast<std::uint32_t>(&rule - rewriter_.grammar().rules.data());
+    }
     void values_of(std::span<const ModuleId> modules);
     std::optional<RunId> add_successor(const ModuleString& successor, const LsysRule& rule);
     std::optional<RunId> add_run(std::span<const ModuleId> run, Span place);
@@ -121,8 +110,8 @@ class LsysSuccessors {
     std::vector<Contexts> contexts_; ///< of the symbols
 
     ModuleRuns runs_;
-    std::vector<Entry> entries_; ///< of the modules
-    std::vector<Choice> choices_;
+    std::vector<Entry> entries_;   ///< of the modules
+    std::vector<Outcome> choices_; ///< competitors, one competition after the other
     ModuleString bounds_;
 
     ModuleKeys<Entry> nearby_;     ///< of modules between others, by their symbols
@@ -130,10 +119,9 @@ class LsysSuccessors {
     ModuleKeys<RunId> drawn_;      ///< by rule and set of draws
 
     std::vector<Outcome> competing_;
-    std::vector<Choice> chances_;
+    std::vector<Outcome> choices_here_; ///< at one position of the word
     ModuleString bound_;
     std::vector<double> values_;
-    Alternative alternative_;
     ModuleString decomposed_;
 };
 

@@ -45,7 +45,7 @@ TEST(LsysChance, thePoolHasTheDistribution) {
     Sample normal, uniform, other;
     double product = 0;
     for (std::uint32_t set = 0; set < draw_sets; ++set) {
-        const auto string = model.rewriter().draw(alternative, a, {}, (set + 0.5) / draw_sets);
+        const ModuleString* string = model.rewriter().successor(alternative, a, {}, set);
         const auto parameters = model.rewriter().modules().parameters(string->front());
         normal.add(parameters[0]);
         uniform.add(parameters[1]);

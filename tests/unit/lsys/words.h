@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "compiler/lsys/derive/deriver.h"
-#include "compiler/lsys/derive/ordered.h"
 #include "tests/unit/lsys/texts.h"
 
 namespace graftal::testing {
@@ -42,12 +41,9 @@ class LsysModel {
         if (!rewriter_) return std::nullopt;
         if (!grammar_->first_cells.empty())
             rewriter_.emplace(*grammar_, parsed_.diagnostics, seed, nullptr, most_statements);
-        const auto by = [&](auto deriver) {
-            deriver.after_each_step(std::move(stage));
-            return deriver.derive(steps);
-        };
-        if (grammar_->in_order) return by(LsysOrderedDeriver(*rewriter_, parsed_.diagnostics, seed, most));
-        return by(LsysDeriver(*rewriter_, parsed_.diagnostics, seed, most));
+        LsysDeriver deriver(*rewriter_, parsed_.diagnostics, seed, most);
+        deriver.after_each_step(std::move(stage));
+        return deriver.derive(steps);
     }
 
     /// The word as text: `F[+(30)A(1,2)]`.

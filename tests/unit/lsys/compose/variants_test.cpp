@@ -114,12 +114,13 @@ TEST(LsysVariants, eachChildIsUsedEquallyOften) {
 
 TEST(LsysVariants, alternativesAreDealtOutInProportion) {
     const Variants variants(11, 1024);
-    const std::vector<Alternative> alternatives = {
-        {nullptr, 0.5, {0}}, {nullptr, 0.375, {1}}, {nullptr, 0.125, {2}}};
+    std::vector<Alternative> alternatives = {
+        {{nullptr, 0.5}, {0}}, {{nullptr, 0.375}, {1}}, {{nullptr, 0.125}, {2}}};
+    share_draws(alternatives, 1);
     for (ModuleId module = 0; module < 20; ++module) {
         std::map<ModuleId, int> seen;
         for (std::uint32_t i = 0; i < 1024; ++i)
-            ++seen[variants.choose(alternatives, i, module, 4).alternative->successor[0]];
+            ++seen[variants.choose(alternatives, i, module, 4).entrant->successor[0]];
         EXPECT_NEAR(seen[0], 512, 1);
         EXPECT_NEAR(seen[1], 384, 1);
         EXPECT_NEAR(seen[2], 128, 1);

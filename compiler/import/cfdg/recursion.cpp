@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -17,12 +15,8 @@ namespace graftal::cfdg {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
-/// Recursion that does not shrink is drawn so deep.
-constexpr int endless_generations = 300;
 /// The logarithm of a size that becomes smaller: an unfolding tells the sizes of all turns apart.
 constexpr double least_growth = -2e-6;
-/// The share of a size that no picture shows.
-constexpr double invisible = 1e-4;
 /// Recursion that shrinks less than by this factor is slow.
 const double slow_growth = std::log(0.85);
 /// The share of its own area that recursion draws again where it fills a picture.
@@ -63,11 +57,7 @@ Recursion::Recursion(const Grammar& grammar, const Expressions& expressions)
         for (const Rule& rule : grammar_.shapes[shape].rules)
             walk(shape, rule.body, 0);
     find_components();
-    find_limits();
-}
-
-std::optional<std::size_t> Recursion::index(const std::string& name) const {
-    return grammar_.shape(name, "");
+    find_rates();
 }
 
 /// The growth of the largest copy of a transform.
@@ -175,30 +165,25 @@ bool Recursion::fills(const std::vector<const Call*>& calls,
     return grown > filling_area;
 }
 
-bool Recursion::fades_slowly(std::size_t from) const {
+bool Recursion::is_endless(std::size_t from) const {
     std::vector<std::vector<std::size_t>> to(component_.size());
     for (const Call& call : calls_)
         to[call.from].push_back(call.to);
     std::vector<std::array<bool, 2>> seen(component_.size()); // by whether recursion leads there
     std::vector<std::pair<std::size_t, bool>> open = {{from, false}};
+    bool found = false;
     while (!open.empty()) {
         const auto [shape, below] = open.back();
         open.pop_back();
         if (std::exchange(seen[shape][below ? 1 : 0], true)) continue;
         const std::size_t component = component_[shape];
-        if (branches_[component] || (slow_[component] && below)) return true;
+        if (recurs_[component] && (!shrinks_[component] || changes_[component])) return false;
+        if (branches_[component] || (slow_[component] && below)) return false;
+        found = found || recurs_[component];
         for (const std::size_t next : to[shape])
             open.emplace_back(next, below || (recurs_[component] && component_[next] != component));
     }
-    return false;
-}
-
-std::vector<std::size_t> Recursion::from_the_leaves() const {
-    std::vector<std::size_t> order(grammar_.shapes.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    // Kosaraju's second walk finds components before those that they call.
-    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t shape) { return component_[shape]; });
-    return order;
+    return found;
 }
 
 void Recursion::mark_callers(std::vector<bool>& marked) const {
@@ -261,30 +246,30 @@ void Recursion::find_components() {
         }
         ++components;
     }
-    limits_.resize(components);
     shrinks_.assign(components, true);
     recurs_.assign(components, false);
     slow_.assign(components, false);
     branches_.assign(components, false);
+    changes_.assign(components, false);
 }
 
-void Recursion::find_limits() {
-    std::vector<std::vector<std::size_t>> members_of(limits_.size());
-    std::vector<std::vector<const Call*>> calls_within(limits_.size());
+void Recursion::find_rates() {
+    std::vector<std::vector<std::size_t>> members_of(shrinks_.size());
+    std::vector<std::vector<const Call*>> calls_within(shrinks_.size());
     for (std::size_t shape = 0; shape < component_.size(); ++shape)
         members_of[component_[shape]].push_back(shape);
     for (const Call& call : calls_)
         if (component_[call.from] == component_[call.to])
             calls_within[component_[call.from]].push_back(&call);
-    for (std::size_t component = 0; component < limits_.size(); ++component) {
+    for (std::size_t component = 0; component < shrinks_.size(); ++component) {
         const std::vector<const Call*>& inner = calls_within[component];
         std::map<std::size_t, std::size_t> place;
         for (const std::size_t member : members_of[component])
             place.emplace(member, place.size());
         const std::size_t n = place.size();
-        const bool changes = std::ranges::any_of(inner, &Call::changes_parameters);
         if (inner.empty()) continue;
         recurs_[component] = true;
+        changes_[component] = std::ranges::any_of(inner, &Call::changes_parameters);
         // The largest growth of any way from one to another (Floyd 1962; Warshall 1962).
         double largest = unknown;
         if (n <= most_shapes) {
@@ -305,11 +290,6 @@ void Recursion::find_limits() {
         shrinks_[component] = largest < least_growth;
         branches_[component] = inner.size() > n && fills(inner, place);
         slow_[component] = largest > slow_growth;
-        if (shrinks_[component] && !changes) continue;
-        limits_[component] = endless_generations;
-        if (!shrinks_[component]) continue;
-        const double steps = std::log(invisible) / largest * static_cast<double>(n);
-        limits_[component] = static_cast<int>(std::clamp(std::ceil(steps), 20.0, 2000.0));
     }
 }
 

@@ -44,7 +44,7 @@ void Unfolding::find_order(std::size_t first) {
         }
     }
     const double extent = extent_ > 0 ? extent_ : 1;
-    order_.emplace(objects, first, extent, translucent_);
+    order_.emplace(objects, first, extent, translucent_, endless_);
     copy_step_ = order_->gap();
     camera_height_ = extent + 2 * order_->top();
 }
@@ -77,7 +77,9 @@ void Unfolding::write_node(std::size_t id, std::vector<std::size_t>& needed) {
         for (std::size_t i = lines.size(); i-- > 0;) {
             if (!is_drawn(lines[i])) continue;
             Affine own = lines[i].map;
-            own.linear[2] = {0, 0, 1};
+            const bool calls =
+                lines[i].master.empty() && !grammar_.shapes[nodes_[lines[i].node].shape].is_path;
+            own.linear[2] = {0, 0, endless_ && calls ? size_of(own) : 1};
             own.translation.z = order_->height(of, i);
             std::vector<ColourStep> all = colours;
             all.insert(all.end(), lines[i].colours.begin(), lines[i].colours.end());
@@ -102,7 +104,8 @@ void Unfolding::write_node(std::size_t id, std::vector<std::size_t>& needed) {
 /// long chain of objects.
 bool Unfolding::is_held(const Written& one) const {
     return one.line->master.empty() && instances_[one.line->node] == 1 &&
-           recursion_.recurs(nodes_[one.line->node].shape) && one.colours.size() <= most_steps_held;
+           recursion_.recurs(nodes_[one.line->node].shape) && !endless_ &&
+           one.colours.size() <= most_steps_held;
 }
 
 void Unfolding::write_line(std::size_t id, const Written& one, std::vector<std::size_t>& needed) {

@@ -53,7 +53,7 @@ std::string stretch_text(const Affine& map) {
 } // namespace
 
 Unfolding::Unfolding(const ForeignFile& file, const Grammar& grammar)
-    : SceneWriter(file, grammar), expressions_(file, grammar), recursion_(grammar, expressions_),
+    : SceneWriter(file, grammar), expressions_(grammar), recursion_(grammar, expressions_),
       named_(grammar.shapes.size()) {
     find_random();
 }
@@ -109,11 +109,14 @@ Translation Unfolding::write() {
 std::optional<std::size_t> Unfolding::unfold_from(const ShapeValue& shape, const Target& target,
                                                   const Affine& world) {
     std::optional<std::size_t> first;
+    endless_ = !translucent_ && !deep_ && recursion_.is_endless(grammar_.numbers.at(shape.name));
     for (salt_ = 0; salt_ < most_trials && !drawn_ && file_.diagnostics.error_count() == 0; ++salt_) {
         const bool known = stretches_;
         first = unfold_once(shape, target, world);
-        // Some path depends on how it is stretched: so do those that lead to it.
-        if (stretches_ && !known) {
+        // Some path depends on how it is stretched: so do those that lead to it. Other recursion may make new
+        // shapes for ever, or cover the canvas at each size.
+        if ((stretches_ && !known) || (endless_ && (full_ || fills_))) {
+            endless_ = false;
             turns_ = colour_steps_ = 0;
             first = unfold_once(shape, target, world);
         }
@@ -134,8 +137,10 @@ std::optional<std::size_t> Unfolding::unfold_once(const ShapeValue& shape, const
     while (!open_.empty() && file_.diagnostics.error_count() == 0) {
         const auto [size, id] = open_.top();
         open_.pop();
+        if (nodes_[id].done) continue;
         // All others are smaller. A canvas of a size is as many pixels wide, if that is more than usual.
-        if (size < std::min(too_small * extent_, grammar_.size ? smallest_pixels : too_small * extent_))
+        if (!endless_ &&
+            size < std::min(too_small * extent_, grammar_.size ? smallest_pixels : too_small * extent_))
             break;
         if (lines_ > most_unfolded_lines || turns_ > most_loop_turns) {
             full_ = true;
@@ -259,15 +264,23 @@ std::optional<std::size_t> Unfolding::node_for(const ShapeValue& value, const Ta
     for (const double part : target)
         key += fmt::format("{:a},", part);
     if (left) key += fmt::format("n{}", *left);
-    // Recursion ends where its shapes are too small, so that those of each size are others.
+    // Most recursion ends where its shapes are too small, so that those of each size are others.
     const double size = size_of(world);
-    if (recursion_.recurs(shape))
+    if (recursion_.recurs(shape) && !endless_)
         key += fmt::format("s{}", std::llround(1e6 * std::log(std::max(size, 1e-100))));
-    if (const double depth = world.linear[2][2]; depth != 1) key += fmt::format("z{:a}", depth);
+    if (const double depth = world.linear[2][2]; depth != 1 && !endless_) key += fmt::format("z{:a}", depth);
     if (stretches_) key += stretch_text(world);
     std::vector<std::size_t>& known = known_[key];
     const std::size_t variants = random_[shape] ? most_variants : 1;
-    if (known.size() >= variants) return known[random_[shape] ? uses_[key]++ % variants : 0];
+    if (known.size() >= variants) {
+        const std::size_t id = known[random_[shape] ? uses_[key]++ % variants : 0];
+        if (Node& node = nodes_[id]; size > node.size && !node.done) {
+            node.size = size;
+            node.world = world;
+            open_.emplace(size, id);
+        }
+        return id;
+    }
     if (nodes_.size() >= most_nodes) {
         full_ = true;
         if (known.empty()) return std::nullopt;

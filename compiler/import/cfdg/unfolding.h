@@ -19,9 +19,9 @@
 namespace graftal::cfdg {
 
 /// The `.inst` of a grammar whose numbers are known: an object for each shape with each of its arguments, and
-/// up to 64 objects where chance decides. Largest shapes come first, and what no picture shows is left out,
-/// as Context Free does. This translates whatever can be computed; `Writer` is for grammars that .inst has
-/// words for.
+/// up to 64 objects where chance decides. Recursion that draws the same at all sizes has no end: its objects
+/// hold themselves. In other grammars, largest shapes come first, and shapes that no picture shows are left
+/// out, as Context Free does.
 class Unfolding : private SceneWriter {
   public:
     Unfolding(const ForeignFile& file, const Grammar& grammar);
@@ -112,6 +112,7 @@ class Unfolding : private SceneWriter {
     std::size_t lines_ = 0, turns_ = 0, colour_steps_ = 0, written_ = 0;
     bool full_ = false, fills_ = false, noted_ = false, drawn_ = false;
     bool stretches_ = false; ///< some path depends on how its place stretches
+    bool endless_ = false;   ///< all recursion has no end: its shapes hold themselves
     std::uint64_t salt_ = 0; ///< of all random numbers
     std::optional<PaintOrder> order_;
     std::vector<std::uint32_t> instances_; ///< of each node, in others

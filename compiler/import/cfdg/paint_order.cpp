@@ -61,10 +61,12 @@ PaintOrder::PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std
         double painted = 0, called = 0, before = 0;
         for (const PaintedLine& line : objects[object]) {
             double& sum = line.is_call ? called : painted;
+            if (line.is_part) painted = called = std::max(painted, called);
             const Spread below = line.node == PaintedLine::none ? Spread{1, 0} : spreads[line.node];
             heights_[object].push_back(line.beside ? before : sum);
             before = heights_[object].back();
             if (!line.beside) sum += below.width;
+            if (line.is_part) called = painted;
             spread.levels = std::max(spread.levels, below.levels + (is_equal(line) ? 1 : 0));
             if (line.depth != 0) least_depth = std::min(least_depth, std::abs(line.depth));
         }

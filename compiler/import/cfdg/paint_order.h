@@ -12,6 +12,7 @@ struct PaintedLine {
     std::size_t node = none; ///< the object that it draws; none of a primitive
     /// A shape of rules, painted when its own turn comes. Primitives and paths are painted with their rule.
     bool is_call = false;
+    bool is_part = false;  ///< lines of the rule itself, which are an object of their own
     bool beside = false;   ///< it does not cover the line before it: both lie at one height
     double depth = 0;      ///< how far `z` moves it
     double log_shrunk = 0; ///< of a call: the logarithm of how much smaller it is

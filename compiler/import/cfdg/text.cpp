@@ -111,13 +111,17 @@ std::optional<std::string> ink_text(const std::vector<ColourStep>& steps, Target
     return text.empty() ? text : "  ink {" + text + " }";
 }
 
-std::vector<ColourStep> shortened(const std::vector<ColourStep>& steps) {
+bool is_plain(const std::vector<ColourStep>& steps) {
     using Kind = ColourStep::Kind;
-    const bool plain = std::ranges::all_of(steps, [](const ColourStep& step) {
+    return std::ranges::all_of(steps, [](const ColourStep& step) {
         const bool toward = step.kind == Kind::toward && step.channel != Channel::hue && step.amount >= 0;
         return step.kind == Kind::change || toward;
     });
-    if (!plain) return steps;
+}
+
+std::vector<ColourStep> shortened(const std::vector<ColourStep>& steps) {
+    using Kind = ColourStep::Kind;
+    if (!is_plain(steps)) return steps;
     std::array<Way, 4> ways;
     double turn = 0;
     for (const ColourStep& step : steps)

@@ -26,31 +26,7 @@ constexpr std::size_t most_shapes = 150;
 
 } // namespace
 
-double growth_of(const Modification& modification, const Expressions& expressions) {
-    double growth = 0;
-    for (const Adjustment& adjustment : modification.adjustments) {
-        if (adjustment.word == "skew") return unknown;
-        if (adjustment.word == "trans") {
-            const Definition* const inner = expressions.modification(adjustment);
-            if (!inner || inner->value.change->adjustments.size() > 20) return unknown;
-            for (const Adjustment& part : inner->value.change->adjustments)
-                if (part.word == "trans") return unknown;
-            growth += growth_of(*inner->value.change, expressions);
-            continue;
-        }
-        if (adjustment.word != "s") continue;
-        double largest = 0;
-        for (std::size_t i = 0; i < adjustment.values.size() && i < 2; ++i) {
-            const std::optional<Interval> range = expressions.range(adjustment.values[i]);
-            if (!range) return unknown;
-            largest = std::max({largest, std::abs(range->least), std::abs(range->most)});
-        }
-        growth += std::log(std::max(largest, 1e-100));
-    }
-    return growth;
-}
-
-Recursion::Recursion(const Grammar& grammar, const Expressions& expressions)
+Recursion::Recursion(const Grammar& grammar, Expressions& expressions)
     : grammar_(grammar), expressions_(expressions) {
     call_passed();
     for (std::size_t shape = 0; shape < grammar_.shapes.size(); ++shape)
@@ -61,23 +37,23 @@ Recursion::Recursion(const Grammar& grammar, const Expressions& expressions)
 }
 
 /// The growth of the largest copy of a transform.
-double Recursion::growth_of_transform(const Element& element) const {
+double Recursion::growth_of_transform(const Element& element, const std::string& space) {
     double growth = -unknown;
     for (const Expr& change : element.arguments)
-        growth =
-            std::max(growth, change.kind == Expr::Kind::modification ? growth_of(*change.change, expressions_)
-                                                                     : unknown);
+        growth = std::max(growth, change.kind == Expr::Kind::modification
+                                      ? expressions_.growth(*change.change, space)
+                                      : unknown);
     return growth;
 }
 
 void Recursion::walk(std::size_t from, const Elements& elements, double growth) {
+    const std::string& space = grammar_.shapes[from].space;
     for (const Element& element : elements) {
-        double inner = growth + growth_of(element.modification, expressions_);
-        if (element.kind == Element::Kind::transform) inner += growth_of_transform(element);
+        double inner = growth + expressions_.growth(element.modification, space);
+        if (element.kind == Element::Kind::transform) inner += growth_of_transform(element, space);
         if (element.kind == Element::Kind::loop) {
             // The last copy is the largest where copies grow.
-            const double copies =
-                element.arguments.empty() ? 1 : expressions_.number(element.arguments[0]).value_or(100);
+            const double copies = expressions_.turns(element, space).value_or(100);
             const double step = inner - growth;
             inner = growth + (step > 0 ? step * std::max(1.0, copies) : 0);
         }
@@ -86,7 +62,6 @@ void Recursion::walk(std::size_t from, const Elements& elements, double growth) 
         for (const Case& one : element.cases)
             walk(from, one.body, growth);
         if (element.kind != Element::Kind::shape) continue;
-        const std::string& space = grammar_.shapes[from].space;
         if (const std::optional<std::size_t> to = grammar_.shape(element.name, space);
             to && !element.computed)
             call(from, *to, element, inner);
@@ -103,7 +78,8 @@ void Recursion::call(std::size_t from, std::size_t to, const Element& element, d
         const Expr& argument = element.arguments[i];
         const bool handed_on =
             argument.kind == Expr::Kind::name && from == to && i < own.size() && own[i].name == argument.text;
-        if (!handed_on && !expressions_.number(argument)) call.changes_parameters = true;
+        if (!handed_on && !expressions_.number(argument, grammar_.shapes[from].space))
+            call.changes_parameters = true;
     }
     for (const Adjustment& adjustment : element.modification.adjustments)
         call.changes_parameters = call.changes_parameters || adjustment.sets_target;

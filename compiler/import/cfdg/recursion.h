@@ -1,7 +1,7 @@
 #pragma once
 
 #include <map>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "compiler/import/cfdg/evaluate/expression.h"
@@ -12,7 +12,7 @@ namespace graftal::cfdg {
 /// The calls between the shapes of a grammar.
 class Recursion {
   public:
-    Recursion(const Grammar& grammar, const Expressions& expressions);
+    Recursion(const Grammar& grammar, Expressions& expressions);
 
     bool shrinks(std::size_t shape) const { return shrinks_[component_[shape]]; }
     /// Whether they lead to each other.
@@ -35,20 +35,17 @@ class Recursion {
 
     void call_passed();
     void call(std::size_t from, std::size_t to, const Element& element, double growth);
-    double growth_of_transform(const Element& element) const;
+    double growth_of_transform(const Element& element, const std::string& space);
     void walk(std::size_t from, const Elements& elements, double growth);
     void find_components();
     void find_rates();
     static bool fills(const std::vector<const Call*>& calls, const std::map<std::size_t, std::size_t>& place);
 
     const Grammar& grammar_;
-    const Expressions& expressions_;
+    Expressions& expressions_;
     std::vector<Call> calls_; ///< the number behind those of the shapes is any shape that an expression names
     std::vector<std::size_t> component_;                             ///< by shape
     std::vector<bool> shrinks_, recurs_, slow_, branches_, changes_; ///< by component
 };
-
-/// The logarithm of the largest factor of size; infinite if it cannot be known.
-double growth_of(const Modification& modification, const Expressions& expressions);
 
 } // namespace graftal::cfdg

@@ -55,8 +55,8 @@ std::string stretch_text(const Affine& map) {
 } // namespace
 
 Unfolding::Unfolding(const ForeignFile& file, const Grammar& grammar)
-    : SceneWriter(file, grammar), expressions_(grammar), recursion_(grammar, expressions_), chance_(grammar),
-      random_(grammar.shapes.size()), named_(grammar.shapes.size()) {
+    : SceneWriter(file, grammar), chance_(grammar), expressions_(file, grammar, chance_),
+      recursion_(grammar, expressions_), random_(grammar.shapes.size()), named_(grammar.shapes.size()) {
     for (std::size_t i = 0; i < grammar.shapes.size(); ++i) {
         const Shape& shape = grammar.shapes[i];
         random_[i] = shape.rules.size() > 1 || std::ranges::any_of(shape.rules, [&](const Rule& rule) {

@@ -100,9 +100,9 @@ class Unfolding : private SceneWriter {
     void write_line(std::size_t id, const Written& one, std::vector<std::size_t>& needed);
     bool is_held(const Written& one) const;
 
+    Chance chance_;
     Expressions expressions_;
     Recursion recursion_;
-    Chance chance_;
     std::vector<bool> random_; ///< by shape: whether chance decides in it or below it
     std::vector<Node> nodes_;
     std::map<std::string, std::vector<std::size_t>> known_;    ///< nodes by shape, arguments and target

@@ -21,4 +21,11 @@ double size_of(const Affine& map) {
     return std::sqrt(std::abs(m[0][0] * m[1][1] - m[0][1] * m[1][0]));
 }
 
+double largest_factor(const Affine& map) {
+    const auto& m = map.linear;
+    const double turned = std::hypot(m[0][0] + m[1][1], m[0][1] - m[1][0]);
+    const double mirrored = std::hypot(m[0][0] - m[1][1], m[0][1] + m[1][0]);
+    return (turned + mirrored) / 2;
+}
+
 } // namespace graftal::cfdg

@@ -16,4 +16,7 @@ std::vector<const Adjustment*> last_of_each(const Modification& modification,
 /// The size of what a map draws, as Context Free measures it: the root of the area of a square of 1.
 double size_of(const Affine& map);
 
+/// The largest factor by which a map lengthens lines of the plane: its norm.
+double largest_factor(const Affine& map);
+
 } // namespace graftal::cfdg

@@ -20,8 +20,7 @@ bool any_part(const Modification& modification, const ExprTest& test) {
 
 bool any_part(const Elements& elements, const ExprTest& test) {
     const auto value = [&](const Expr& expression) { return any_part(expression, test); };
-    const auto label = [&](const Expr& expression) { // `case 1..3` is a range,
-                                                     // and draws no number
+    const auto label = [&](const Expr& expression) { // a range such as `1..3` draws no number
         return expression.text == ".." ? std::ranges::any_of(expression.operands, value) : value(expression);
     };
     return std::ranges::any_of(elements, [&](const Element& element) {
@@ -61,6 +60,10 @@ bool Chance::decides(const Elements& elements, const std::string& space) const {
 
 bool Chance::decides(const Modification& modification, const std::string& space) const {
     return any_part(modification, draws(space));
+}
+
+bool Chance::decides(const Expr& expression, const std::string& space) const {
+    return any_part(expression, draws(space));
 }
 
 ExprTest Chance::draws(const std::string& space) const {

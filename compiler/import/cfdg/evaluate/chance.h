@@ -22,10 +22,10 @@ class Chance {
     /// The grammar must outlive this.
     explicit Chance(const Grammar& grammar);
 
-    /// Whether lines of a rule in a name space draw, apart from the shapes that
-    /// they call.
+    /// Whether lines of a rule in a name space draw, apart from the shapes that they call.
     bool decides(const Elements& elements, const std::string& space) const;
     bool decides(const Modification& modification, const std::string& space) const;
+    bool decides(const Expr& expression, const std::string& space) const;
 
   private:
     ExprTest draws(const std::string& space) const;

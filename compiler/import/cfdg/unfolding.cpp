@@ -121,11 +121,12 @@ std::optional<std::size_t> Unfolding::unfold_from(const ShapeValue& shape, const
     for (salt_ = 0; salt_ < most_trials && !drawn_ && file_.diagnostics.error_count() == 0; ++salt_) {
         const bool known = stretches_;
         first = unfold_once(shape, target, world);
-        // Some path depends on how it is stretched: so do those that lead to it.
-        // Other recursion may make new shapes for ever, or cover the canvas at each
-        // size.
-        if ((stretches_ && !known) || ((endless_ || even_) && (full_ || fills_))) {
-            endless_ = even_ = false;
+        // Paths may depend on how they are stretched: so do the shapes that lead to them. Other shapes cover
+        // the canvas whatever their size, or recursion makes new ones for ever.
+        const bool compact = endless_ || std::ranges::any_of(nodes_, &Node::part);
+        if ((stretches_ && !known) || (fills_ && compact) || (full_ && endless_)) {
+            endless_ = false;
+            even_ = !stretches_ && !fills_;
             turns_ = colour_steps_ = 0;
             first = unfold_once(shape, target, world);
         }

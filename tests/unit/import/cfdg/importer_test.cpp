@@ -114,8 +114,8 @@ TEST(ContextFree, RecursionWithoutEndMayHaveValuesAndChance) {
     ASSERT_TRUE(counted.graph) << counted.said();
     EXPECT_EQ(counted.leaves().size(), 11u) << "0.5^n of at least 0.3 pixels of 500";
     // A name of a rule hides that of the file.
-    const ImportedShapes hidden("a.cfdg", "startshape A(1.5)\nCF::Size = [s 9]\nsize = 0.5\n"
-                                          "shape A(number size) { SQUARE [] if (size > 1) A(0.9) [s size] }");
+    const ImportedShapes hidden("a.cfdg", "startshape A(1.5)\nCF::Size = [s 9]\nbig = 0.5\n"
+                                          "shape A(number big) { SQUARE [] if (big > 1) A(0.9) [s big] }");
     ASSERT_TRUE(hidden.graph) << hidden.said();
     EXPECT_EQ(hidden.leaves().size(), 2u);
 }

@@ -44,7 +44,7 @@ void add_render(CLI::App& app, Options& options) {
     app.add_flag_callback(
         "--test-linear", [&] { options.render.format = SampleFormat::linear16; },
         "Write a 16-bit PNG of linear values, for measurements (default: 8-bit sRGB)");
-    add_bits(app, options)->excludes("--test-linear");
+    add_bits(app, options);
     app.add_flag_callback(
         "--progressive", [&options] { options.progressive = true; },
         "Write coarse pictures first, then finer ones under the same name; Ctrl-C keeps the last one "

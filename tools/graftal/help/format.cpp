@@ -71,7 +71,7 @@ bool is_for_tests(const CLI::Option& option) {
 
 void group_options(CLI::App& command) {
     for (CLI::Option* const option : command.get_options())
-        if (is_for_tests(*option)) option->group(""); // which hides it
+        if (is_for_tests(*option)) option->group("Tests"); // no heading of the help
     for (CLI::App* const action : command.get_subcommands([](const CLI::App*) { return true; }))
         group_options(*action);
     constexpr std::size_t most_in_one_list = 15;

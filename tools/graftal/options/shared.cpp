@@ -277,14 +277,14 @@ std::string engines_text() {
 
 } // namespace
 
-CLI::Option* add_bits(CLI::App& app, Options& options) {
+void add_bits(CLI::App& app, Options& options) {
     const auto read = [](const std::string& text) {
         return text == "8"    ? std::optional(SampleFormat::srgb8)
                : text == "16" ? std::optional(SampleFormat::srgb16)
                               : std::nullopt;
     };
-    return add_value(app, "--bits", "8|16", "Bits of each colour of a PNG (default 8)", "8 or 16", read,
-                     [&options](SampleFormat format) { options.render.format = format; });
+    add_value(app, "--bits", "8|16", "Bits of each colour of a PNG (default 8)", "8 or 16", read,
+              [&options](SampleFormat format) { options.render.format = format; });
 }
 
 void add_drawing(CLI::App& app, Options& options) {

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/analysis/run_bounds.h"
 #include "compiler/primitives/primitive.h"
 
 namespace graftal {

@@ -116,7 +116,7 @@ class Bounder {
             bound_primitive(id, *object.primitive);
             return;
         }
-        if (object.run) return bound_run(id, object.run);
+        if (object.packed) return bound_packed(id, object.packed);
         Outer& outer = outers_[id];
         for (const Instance& instance : object.instances) {
             const Outer& part = outers_[instance.master];
@@ -148,10 +148,10 @@ class Bounder {
         }
     }
 
-    void bound_run(ObjectId id, std::shared_ptr<const Run> run) {
+    void bound_packed(ObjectId id, const PackedEdges& edges) {
         Outer& outer = outers_[id];
-        meter_.add(run->size());
-        outer.run = std::make_shared<const RunBounds>(std::move(run));
+        meter_.add(edges.item_count());
+        outer.run = std::make_shared<const RunBounds>(edges.run);
         outer.box = outer.run->box();
         outer.set_ball(outer.run->ball());
         outer.empty = false;

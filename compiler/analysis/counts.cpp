@@ -6,7 +6,6 @@
 
 #include "compiler/analysis/decimal.h"
 #include "compiler/analysis/partition.h"
-#include "compiler/graph/run.h"
 
 namespace graftal {
 
@@ -135,7 +134,7 @@ class Counter {
     bool add_up_ending(ObjectId id) {
         const Object& object = graph_.objects[id];
         if (object.primitive) ending_[id] = 1;
-        if (object.run) ending_[id] = object.run->part_count();
+        if (object.packed) ending_[id] = object.packed.size();
         for (const Times& part : masters_of(object))
             if (!budget_.add(ending_[id], ending_[part.master], part.times)) return false;
         held_bits_ += bits(ending_[id]);

@@ -156,6 +156,29 @@ Vec3 RunBounds::support_point(Vec3 direction) const {
     return best_point;
 }
 
+Vec3 RunBounds::surface_near(Vec3 point, Vec3 to_eye) const {
+    Vec3 seen(0.0);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < run_->size(); ++i) {
+        const RunItem& item = (*run_)[i];
+        const bool round = item.shape.is_sphere();
+        const double square = glm::dot(item.axis, item.axis);
+        const double share = round || !(square > 0)
+                                 ? 0
+                                 : std::clamp(glm::dot(point - item.base, item.axis) / square, 0.0, 1.0);
+        const Vec3 inside = item.base + share * item.axis;
+        const double distance = glm::distance(inside, point) - item.radius;
+        if (!(distance < nearest)) continue;
+        nearest = distance;
+        const Vec3 out =
+            round || !(square > 0) ? to_eye : to_eye - glm::dot(to_eye, item.axis) / square * item.axis;
+        const double length = glm::length(out), narrowing = item.ball ? 0 : 1 - item.shape.top_radius();
+        seen =
+            length > 0 ? inside + item.radius * (round ? 1 : 1 - share * narrowing) / length * out : inside;
+    }
+    return seen;
+}
+
 double RunBounds::farthest_from(Vec3 centre, Vec3& point) const {
     double best = -std::numeric_limits<double>::infinity();
     search([&](const Box& box) { return farthest_of(box, centre); },

@@ -35,6 +35,8 @@ class RunBounds {
 
     /// A point of the run that is farthest along `direction`; about O(log items).
     Vec3 support_point(Vec3 direction) const;
+    /// A point of the item that lies nearest to `point`: on its side, farthest towards the eye. O(items).
+    Vec3 surface_near(Vec3 point, Vec3 to_eye) const;
 
   private:
     template<typename UpperOf, typename OfItem>

@@ -189,9 +189,8 @@ class ChanceFinder {
             sizes.push_back(size_of(instance));
         for (const double size : sizes)
             mass_[id] += size;
-        if (const auto& run = graph_.objects[id].run)
-            for (std::size_t i = 0; i < run->size(); ++i)
-                mass_[id] += area_of((*run)[i]);
+        for (const double area : areas_of_items(graph_.objects[id].packed))
+            mass_[id] += area;
         settle(id, sizes);
     }
 

@@ -19,8 +19,7 @@ Graph walked_graph(const Graph& graph, const Chances& chances) {
     for (ObjectId id = 0; id < graph.objects.size(); ++id) {
         Object object;
         object.primitive = graph.objects[id].primitive;
-        object.run = graph.objects[id].run;
-        object.run_materials = graph.objects[id].run_materials;
+        object.packed = graph.objects[id].packed;
         for (std::size_t i = 0; i < chances[id].size(); ++i) {
             if (!(chances[id][i] > 0)) continue;
             object.instances.push_back(graph.objects[id].instances[i]);
@@ -72,7 +71,7 @@ class ChaosGame::Builder {
 
     std::optional<ChaosGame> build() && {
         const Object& root = graph_.objects[graph_.root];
-        if (root.instances.empty() && !root.run) return std::nullopt;
+        if (root.instances.empty() && !root.packed) return std::nullopt;
         game_.states_.resize(graph_.objects.size());
         begins_[graph_.root] = 1;
         for (std::size_t c = components_.members.size(); c-- > 0;) // users before their masters
@@ -160,7 +159,7 @@ class ChaosGame::Builder {
 
     void pass_on(ObjectId id, double visits) {
         const Object& object = graph_.objects[id];
-        if (object.run && visits > 0) add_run(id, visits);
+        if (object.packed && visits > 0) add_packed(id, visits);
         for (std::uint32_t i = 0; i < object.instances.size(); ++i) {
             const Instance& instance = object.instances[i];
             const double flow = visits * instance.chance;
@@ -186,18 +185,11 @@ class ChaosGame::Builder {
         source_weights_.push_back(flow);
     }
 
-    void add_run(ObjectId id, double flow) {
-        const Object& object = graph_.objects[id];
-        std::vector<double> areas;
-        areas.reserve(object.run->size());
-        for (std::size_t i = 0; i < object.run->size(); ++i)
-            areas.push_back(area_of((*object.run)[i]));
+    void add_packed(ObjectId id, double flow) {
         Source source;
         source.state = id;
-        source.run = object.run;
-        source.items = game_.tables_.add(areas);
-        for (const std::optional<MaterialId>& material : object.run_materials)
-            source.run_materials.push_back(material.value_or(none));
+        source.packed = graph_.objects[id].packed;
+        source.items = game_.tables_.add(areas_of_items(source.packed));
         game_.sources_.push_back(std::move(source));
         source_weights_.push_back(flow);
     }

@@ -83,14 +83,13 @@ class ChaosGame {
         std::optional<Rgb> base;    ///< mean colour of its materials
     };
 
-    /// Where points come from: a primitive under an instance, a run, or a core.
+    /// Where points come from: a primitive under an instance, packed edges, or a core.
     struct Source {
         std::uint32_t core = none;
         std::uint32_t state = none; ///< of the object that has the instance
         std::optional<PlacedSurface> surface;
-        std::shared_ptr<const Run> run; ///< then one of its items, and `state` is the run's own
+        PackedEdges packed; ///< then one of their items, and `state` is of the object that has them
         AliasTables::Range items;
-        std::vector<std::uint32_t> run_materials; ///< by colour
         Paint paint;
         std::uint32_t material = none;
     };
@@ -129,7 +128,6 @@ class ChaosPlayer {
     };
 
     ChaosPoint next();
-    ChaosPoint next_of_run(const ChaosGame::Source& source);
     void fill_in_world(std::span<ChaosPoint> points);
     void wander(Wanderer& wanderer);
     Wanderer* settled(std::uint32_t core);

@@ -59,7 +59,11 @@ ChaosPoint ChaosPlayer::next() {
     const bool only = game_.source_choice_.count == 1;
     const ChaosGame::Source& source =
         game_.sources_[only ? 0 : game_.tables_.choose(game_.source_choice_, random_.bits())];
-    if (source.run) return next_of_run(source);
+    if (source.packed) {
+        const std::size_t item = game_.tables_.choose(source.items, random_.bits());
+        return climb({point_of_item(source.packed, item, random_), source.paint, source.state, 0},
+                     source.packed.material_of_item(item).value_or(ChaosGame::none), std::nullopt);
+    }
     if (source.core == ChaosGame::none)
         return climb({source.surface->point(random_), source.paint, source.state, 0}, source.material,
                      std::nullopt);
@@ -70,12 +74,6 @@ ChaosPoint ChaosPlayer::next() {
         wander(wanderer);
     while (!core.always_leaves && random_.unit() >= game_.states_[wanderer.state].leave);
     return climb(wanderer, ChaosGame::none, core.base);
-}
-
-ChaosPoint ChaosPlayer::next_of_run(const ChaosGame::Source& source) {
-    const RunItem& item = (*source.run)[game_.tables_.choose(source.items, random_.bits())];
-    return climb({point_of(item, random_), source.paint, source.state, 0}, source.run_materials[item.colour],
-                 std::nullopt);
 }
 
 ChaosPoint ChaosPlayer::climb(Wanderer at, std::uint32_t material, const std::optional<Rgb>& base) {

@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/graph/run.h"
 #include "compiler/primitives/primitive_cache.h"
 #include "compiler/primitives/support_points.h"
 #include "compiler/primitives/tapered.h"
@@ -78,8 +79,6 @@ double slant_of(const RunItem& item) {
     return std::hypot((1 - item.shape.top_radius()) * item.radius, glm::length(item.axis));
 }
 
-} // namespace
-
 double area_of(const RunItem& item) {
     const double r = item.radius, ball = 4 * pi * r * r;
     if (item.shape.is_sphere()) return ball;
@@ -87,7 +86,18 @@ double area_of(const RunItem& item) {
     return pi * r * r * (1 + top * top) + pi * r * (1 + top) * slant_of(item) + (item.ball ? ball : 0);
 }
 
-Vec3 point_of(const RunItem& item, RandomStream& random) {
+} // namespace
+
+std::vector<double> areas_of_items(const PackedEdges& edges) {
+    std::vector<double> areas;
+    areas.reserve(edges.item_count());
+    for (std::size_t i = 0; i < edges.item_count(); ++i)
+        areas.push_back(area_of((*edges.run)[i]));
+    return areas;
+}
+
+Vec3 point_of_item(const PackedEdges& edges, std::size_t number, RandomStream& random) {
+    const RunItem& item = (*edges.run)[number];
     const double r = item.radius, top = item.shape.top_radius();
     const double u = random.unit(), v = random.unit();
     double at = random.unit() * area_of(item);

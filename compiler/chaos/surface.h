@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "compiler/graph/graph.h"
-#include "compiler/graph/run.h"
 #include "compiler/support/counter_random.h"
 
 namespace graftal {
@@ -40,9 +42,9 @@ class PlacedSurface {
     double area_;
 };
 
-/// The area of what an item of a run draws, its ball included; exact.
-double area_of(const RunItem& item);
-/// A point of it, evenly spread.
-Vec3 point_of(const RunItem& item, RandomStream& random);
+/// The areas of what the items of packed edges draw, their balls included; exact.
+std::vector<double> areas_of_items(const PackedEdges& edges);
+/// A point of one of them, evenly spread.
+Vec3 point_of_item(const PackedEdges& edges, std::size_t number, RandomStream& random);
 
 } // namespace graftal

@@ -1,9 +1,10 @@
 #include "compiler/detail/leaf_walk.h"
 
 #include <algorithm>
+#include <ranges>
 
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/graph/piece_kind.h"
-#include "compiler/detail/graph/run_cells.h"
 #include "compiler/detail/piece.h"
 #include "compiler/primitives/texture_space.h"
 
@@ -119,19 +120,15 @@ void LeafWalk::push_children(bool is_cut, double detail) {
 
 /// The last of them first. All painters show them alike.
 void LeafWalk::push_items() {
-    const RunCell& cell = *cut_.nodes[visit_.shape].cell;
-    const auto push = [&](const CutEdge& edge) {
+    std::vector<CutEdge> edges;
+    for_each_edge(cut_.nodes[visit_.shape], false, [&](const CutEdge& edge) { edges.push_back(edge); });
+    for (const CutEdge& edge : edges | std::views::reverse) {
         fill_child(edge, false, 0, stack_.emplace_back());
         for (const Paint& paint : paints_) {
             Paint& child = paint_stack_.emplace_back(paint);
             child.pair = symmetry_.pair[edge.child];
             look_through(cut_, cut_.nodes[visit_.shape], false, edge, paint, child);
         }
-    };
-    for (std::size_t i = cell.first + cell.count; i-- > cell.first;) {
-        const RunItem& item = (*cell.source->run)[i];
-        if (item.ball) push(edge_to_ball(*cell.source, item));
-        push(edge_to_body(*cell.source, item));
     }
 }
 

@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/graph/piece_kind.h"
-#include "compiler/detail/graph/run_cells.h"
 #include "compiler/detail/least_width.h"
 #include "compiler/detail/mesh/limit_normal.h"
 #include "compiler/detail/piece.h"
@@ -97,8 +97,8 @@ void PartRays::go_below(const At& at, bool cut) {
     std::vector<Waiting>& waiting = waiting_[at.depth];
     const double per_unit = node.unbounded ? 0 : projection_.detail_per_unit(ball_of(at));
     waiting.clear();
-    std::deque<CutEdge> items; // of a run: they are made here
-    const bool is_run = node.cell && !cut;
+    std::deque<CutEdge> items; // of a cell: they are made here
+    const bool is_cell = node.cell && !cut;
     for_each_edge(node, cut, [&](const CutEdge& edge) {
         ++work_;
         const CutNode& child = cut_.nodes[edge.child];
@@ -117,8 +117,8 @@ void PartRays::go_below(const At& at, bool cut) {
             t = std::max(least_, along - std::sqrt(half));
             if (along + std::sqrt(half) < least_ || !(t < best_.t)) return;
         }
-        if (is_run) items.push_back(edge);
-        waiting.push_back({t, is_run ? &items.back() : &edge});
+        if (is_cell) items.push_back(edge);
+        waiting.push_back({t, is_cell ? &items.back() : &edge});
     });
     std::ranges::sort(waiting, {}, &Waiting::t);
     const std::size_t levels = at.levels;

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/graph/walk.h"
 #include "compiler/primitives/texture_space.h"
 

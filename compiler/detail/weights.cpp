@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "compiler/detail/baked.h"
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/shadow/coverage.h"
 #include "compiler/detail/shell/point_set.h"
 #include "compiler/primitives/tessellate.h"
@@ -113,9 +113,9 @@ Weights::Weight Weights::of_primitive(const PieceKind& asked) const {
 
 /// Weight of a cell that is not cut. Cells are many, and hardly any is met twice: it is faster to weigh them
 /// than to remember them.
-Weights::Weight Weights::of_cell(const PieceKind& kind, const RunCell& cell) {
+Weights::Weight Weights::of_cell(const PieceKind& kind, const EdgeCell& cell) {
     Weight sum;
-    for (const RunCell::Alike& alike : cell.alike) {
+    for (const EdgeCell::Alike& alike : cell.alike) {
         CutEdge edge;
         edge.child = cell.source->child[alike.shape.index()];
         edge.stretch = edge.volume_stretch = std::exp2(0.25 * (alike.quarter_octave + 0.5));
@@ -237,7 +237,7 @@ bool Weights::weigh(std::uint32_t start) {
         if (frame.next_edge < edges.size()) {
             const PieceKind next = child_kind(kind, edges[frame.next_edge++]);
             ++visits_;
-            if (const RunCell* const cell = cut_.nodes[next.node].cell.get(); cell && !is_cut(next)) {
+            if (const EdgeCell* const cell = cut_.nodes[next.node].cell.get(); cell && !is_cut(next)) {
                 frame.sum += of_cell(next, *cell);
                 continue;
             }

@@ -99,7 +99,7 @@ class Weights {
     bool too_many_kinds() const;
     void forget_kinds();
     Weight of_primitive(const PieceKind& kind) const;
-    Weight of_cell(const PieceKind& kind, const RunCell& cell);
+    Weight of_cell(const PieceKind& kind, const EdgeCell& cell);
     void crowd(const PieceKind& kind, Weight& weight) const;
     void squeeze(const PieceKind& kind, Weight& weight) const;
 

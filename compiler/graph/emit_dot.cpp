@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "compiler/graph/run.h"
-
 namespace graftal {
 
 namespace {
@@ -51,7 +49,7 @@ class DotWriter {
         const Object& object = graph_.objects[id];
         out_ += fmt::format("{}n{} [label={}", indent, id, quoted(object.name));
         if (object.primitive) out_ += ", shape=box";
-        if (object.run) out_ += fmt::format(", shape=box3d, xlabel=\"{} parts\"", object.run->part_count());
+        if (object.packed) out_ += fmt::format(", shape=box3d, xlabel=\"{} parts\"", object.packed.size());
         if (id == graph_.root) out_ += ", peripheries=2";
         out_ += "];\n";
     }

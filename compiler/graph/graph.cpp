@@ -5,7 +5,6 @@
 #include <unordered_map>
 
 #include "compiler/graph/attributes.h"
-#include "compiler/graph/run.h"
 
 namespace graftal {
 
@@ -20,55 +19,34 @@ ObjectsByName by_name(const Graph& graph) {
     return objects;
 }
 
-/// The instances of an object one by one, those that a run means too.
-class Parts {
-  public:
-    Parts(const Graph& graph, const Object& object) : graph_(graph), object_(object) {}
-
-    struct Part {
-        std::string_view master;
-        Instance instance; ///< apart from its master
-    };
-
-    std::size_t count() const { return object_.run ? object_.run->part_count() : object_.instances.size(); }
-
-    Part of(const Instance& instance) const { return {graph_.objects[instance.master].name, instance}; }
-
-    /// Requires that one is left.
-    Part next() {
-        if (!object_.run) return of(object_.instances[next_++]);
-        const RunItem& item = (*object_.run)[next_];
-        const bool ball = at_ball_;
-        at_ball_ = item.ball && !ball;
-        if (!at_ball_) ++next_;
-        Part part{name_of(ball ? Primitive(PrimitiveKind::sphere) : item.shape.primitive()), {}};
-        part.instance.parent_from_child = ball ? run_from_ball(item) : run_from_body(item);
-        part.instance.material = object_.run_materials[item.colour];
-        return part;
-    }
-
-  private:
-    const Graph& graph_;
-    const Object& object_;
-    std::size_t next_ = 0;
-    bool at_ball_ = false;
+/// An edge by its master's name.
+struct NamedEdge {
+    std::string_view master;
+    Instance instance; ///< apart from its master
 };
 
-bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {
-    Parts parts_of_x(a, x), parts_of_y(b, y);
-    const auto alike = [&](const Parts::Part& p, const Parts::Part& q) {
-        return p.master == q.master && equal_attributes(a, p.instance, b, q.instance);
-    };
-    if (x.primitive != y.primitive || parts_of_x.count() != parts_of_y.count()) return false;
-    if (x.terminal.has_value() != y.terminal.has_value() || x.terminal_px != y.terminal_px) return false;
-    if (x.terminal && !alike(parts_of_x.of(*x.terminal), parts_of_y.of(*y.terminal))) return false;
-    for (std::size_t left = parts_of_x.count(); left > 0; --left)
-        if (!alike(parts_of_x.next(), parts_of_y.next())) return false;
-    return true;
+/// The edges of an object, and its terminal.
+std::vector<NamedEdge> named_edges(const Graph& graph, const Object& object) {
+    std::vector<NamedEdge> edges;
+    for (const Instance& instance : object.instances)
+        edges.push_back({graph.objects[instance.master].name, instance});
+    for (const PackedEdge& edge : object.packed)
+        edges.push_back({name_of(edge.primitive), {0, edge.parent_from_child, {}, edge.material, {}}});
+    if (object.terminal) edges.push_back({graph.objects[object.terminal->master].name, *object.terminal});
+    return edges;
 }
 
-bool has_run(const Graph& graph) {
-    return std::ranges::any_of(graph.objects, [](const Object& object) { return object.run != nullptr; });
+bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {
+    if (x.primitive != y.primitive) return false;
+    if (x.terminal.has_value() != y.terminal.has_value() || x.terminal_px != y.terminal_px) return false;
+    return std::ranges::equal(
+        named_edges(a, x), named_edges(b, y), [&](const NamedEdge& p, const NamedEdge& q) {
+            return p.master == q.master && equal_attributes(a, p.instance, b, q.instance);
+        });
+}
+
+bool has_packed(const Graph& graph) {
+    return std::ranges::any_of(graph.objects, [](const Object& object) { return bool(object.packed); });
 }
 
 std::size_t union_count(const Graph& graph) {
@@ -120,17 +98,17 @@ std::size_t instance_count(const Graph& graph) {
     return count;
 }
 
-std::size_t run_part_count(const Graph& graph) {
-    std::size_t count = 0;
+std::size_t edge_count(const Graph& graph) {
+    std::size_t count = instance_count(graph);
     for (const Object& object : graph.objects)
-        if (object.run) count += object.run->part_count();
+        count += object.packed.size();
     return count;
 }
 
 bool equal(const Graph& a, const Graph& b) {
     if (union_count(a) != union_count(b) || !(a.settings == b.settings)) return false;
-    // Runs name kinds of primitives and not objects.
-    if (!has_run(a) && !has_run(b) && a.objects.size() != b.objects.size()) return false;
+    // Packed edges name kinds of primitives and not objects.
+    if (!has_packed(a) && !has_packed(b) && a.objects.size() != b.objects.size()) return false;
     if (a.materials != b.materials || a.objects[a.root].name != b.objects[b.root].name) return false;
     const ObjectsByName others = by_name(b);
     for (const Object& object : a.objects) {

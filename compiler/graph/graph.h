@@ -29,12 +29,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "compiler/graph/packed_edges.h"
 #include "compiler/graph/primitive.h"
 #include "compiler/graph/settings.h"
 #include "compiler/support/affine.h"
@@ -43,10 +43,7 @@
 
 namespace graftal {
 
-class Run;
-
 using ObjectId = std::uint32_t;
-using MaterialId = std::uint32_t;
 
 /// One level if the master is unending, else none.
 inline constexpr std::uint32_t levels_of_master = UINT32_MAX;
@@ -69,12 +66,9 @@ struct Object {
     std::vector<Instance> instances;    ///< the union, in the order of the text
     std::optional<Instance> terminal;   ///< drawn in place of the object where recursion is cut; its
                                         ///< master must be ending
-    /// A union of round primitives in place of instances, too many to be instances (run.h). Means what
-    /// instances would, in this order; graphs share it, for nobody changes it.
-    std::shared_ptr<const Run> run;
-    std::vector<std::optional<MaterialId>> run_materials; ///< by the colours of the run
-    double terminal_px = 0; ///< size on screen from which down the terminal is drawn; 0: that of
-                            ///< what is culled
+    PackedEdges packed;                 ///< in place of instances; means what they would, in this order
+    double terminal_px = 0;             ///< size on screen from which down the terminal is drawn; 0: that of
+                                        ///< what is culled
     Span span;
 };
 
@@ -91,16 +85,16 @@ struct Graph {
     ObjectId primitive(const Primitive& primitive);
 };
 
-/// The edges of the graph, runs aside.
+/// The edges of the graph, packed ones aside.
 std::size_t instance_count(const Graph& graph);
 
-/// The primitives that its runs hold, each run once.
-std::size_t run_part_count(const Graph& graph);
+/// All edges of the graph.
+std::size_t edge_count(const Graph& graph);
 
 /// Equal structure: the same unions, names, instances (in order), transforms to the last bit, tints, levels,
-/// chances, materials, settings and root, and as many primitives. A run equals the instances that it means;
-/// it names kinds and not objects, so where a graph has one, primitives are not counted. Ids may differ,
-/// spans do not count.
+/// chances, materials, settings and root, and as many primitives. Packed edges equal the instances that they
+/// mean; they name kinds and not objects, so where a graph has some, primitives are not counted. Ids may
+/// differ, spans do not count.
 bool equal(const Graph& a, const Graph& b);
 
 } // namespace graftal

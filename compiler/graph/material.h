@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,8 @@
 #include "compiler/support/tint.h"
 
 namespace graftal {
+
+using MaterialId = std::uint32_t;
 
 /// The finish of a surface; the numbers are those of POV-Ray, which the tracer follows too
 /// (trace/shade/optics.h).

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "compiler/graph/attributes.h"
-#include "compiler/graph/run.h"
 #include "compiler/support/number.h"
 
 namespace graftal {
@@ -161,7 +160,8 @@ class Printer {
         out_ += object.name + " {\n";
         for (std::size_t i = 0; i < object.instances.size();)
             i = print_group(object.instances, i);
-        if (object.run) print_run(object);
+        for (const PackedEdge& edge : object.packed)
+            print_packed(edge);
         if (object.terminal) {
             out_ += "  terminal: " + master_name(*object.terminal) + "\n";
             print_attributes(*object.terminal);
@@ -170,22 +170,11 @@ class Printer {
         out_ += "}\n\n";
     }
 
-    /// Prints the instances that a run stands for.
-    void print_run(const Object& object) {
-        for (std::size_t i = 0; i < object.run->size(); ++i) {
-            const RunItem& item = (*object.run)[i];
-            const std::optional<MaterialId>& material = object.run_materials[item.colour];
-            print_part(item.shape.primitive(), run_from_body(item), material);
-            if (item.ball) print_part(PrimitiveKind::sphere, run_from_ball(item), material);
-        }
-    }
-
-    void print_part(const Primitive& primitive, const Affine& place,
-                    const std::optional<MaterialId>& material) {
+    void print_packed(const PackedEdge& edge) {
         out_ += "  instance: ";
-        out_ += name_of(primitive);
+        out_ += name_of(edge.primitive);
         out_ += '\n';
-        print_attributes({0, place, Tint(), material, Span()});
+        print_attributes({0, edge.parent_from_child, Tint(), edge.material, Span()});
     }
 
     /// Writes the instances from `first` on that are placed alike as one statement, as Hart's texts do.

@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/graph/packed_edges.h"
+
 namespace graftal {
 
 namespace {
@@ -88,6 +90,37 @@ void Run::shrink_to_fit() {
     std::copy_n(chunks_.back().get(), used, last.get());
     chunks_.back() = std::move(last);
     capacity_ = size_;
+}
+
+std::size_t PackedEdges::size() const {
+    return run ? run->part_count() : 0;
+}
+
+std::size_t PackedEdges::item_count() const {
+    return run ? run->size() : 0;
+}
+
+std::optional<MaterialId> PackedEdges::material_of_item(std::size_t item) const {
+    return materials[(*run)[item].colour];
+}
+
+std::optional<std::size_t> PackedEdges::unsound_item() const {
+    for (std::size_t i = 0; i < item_count(); ++i)
+        if (!is_sound((*run)[i]) || (*run)[i].colour >= materials.size()) return i;
+    return std::nullopt;
+}
+
+PackedEdge PackedEdges::Iterator::operator*() const {
+    const RunItem& item = (*edges_->run)[item_];
+    const std::optional<MaterialId>& material = edges_->materials[item.colour];
+    if (at_ball_) return {PrimitiveKind::sphere, run_from_ball(item), material};
+    return {item.shape.primitive(), run_from_body(item), material};
+}
+
+PackedEdges::Iterator& PackedEdges::Iterator::operator++() {
+    at_ball_ = !at_ball_ && (*edges_->run)[item_].ball;
+    if (!at_ball_) ++item_;
+    return *this;
 }
 
 } // namespace graftal

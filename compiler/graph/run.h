@@ -63,7 +63,7 @@ struct RunItem {
     std::uint32_t turn = 0;
     RunShape shape;
     bool ball = false;        ///< another part: a sphere of this radius at the far end
-    std::uint16_t colour = 0; ///< one of Object::run_materials
+    std::uint16_t colour = 0; ///< one of PackedEdges::materials
 };
 static_assert(sizeof(RunItem) == 64);
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "compiler/graph/path.h"
-#include "compiler/graph/run.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
@@ -55,7 +54,7 @@ class Unfolding {
     bool open(const PathState& place) {
         const Object& object = graph_.objects[place.object];
         if (object.primitive) return draw_leaf(place, object.primitive);
-        if (object.run) return draw_run(place, object);
+        if (object.packed) return draw_packed(place, object.packed);
         if (!components_.unending[place.object] || !steps_ || place.levels < *steps_) {
             stack_.push_back({place, Draw::all});
         } else if (object.terminal) {
@@ -68,19 +67,12 @@ class Unfolding {
         return true;
     }
 
-    bool draw_run(const PathState& place, const Object& object) {
-        for (std::size_t i = 0; i < object.run->size(); ++i) {
-            const RunItem& item = (*object.run)[i];
-            const std::optional<MaterialId>& own = object.run_materials[item.colour];
-            const auto part = [&](const Affine& run_from_part) {
-                PathState leaf = place;
-                leaf.world_from_object = place.world_from_object * run_from_part;
-                if (own) leaf.material = own;
-                return leaf;
-            };
-            if (!draw_leaf(part(run_from_body(item)), item.shape.primitive())) return false;
-            if (item.ball && !draw_leaf(part(run_from_ball(item)), Primitive(PrimitiveKind::sphere)))
-                return false;
+    bool draw_packed(const PathState& place, const PackedEdges& edges) {
+        for (const PackedEdge& edge : edges) {
+            PathState leaf = place;
+            leaf.world_from_object = place.world_from_object * edge.parent_from_child;
+            if (edge.material) leaf.material = edge.material;
+            if (!draw_leaf(leaf, edge.primitive)) return false;
         }
         return true;
     }

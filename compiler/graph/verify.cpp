@@ -11,7 +11,6 @@
 #include "compiler/graph/components.h"
 #include "compiler/graph/path.h"
 #include "compiler/graph/planes.h"
-#include "compiler/graph/run.h"
 #include "compiler/support/check.h"
 #include "compiler/support/number.h"
 
@@ -215,10 +214,10 @@ class Verifier {
         if (object.primitive) {
             if (!object.instances.empty()) flaw(id, "a primitive with instances");
             if (object.terminal) flaw(id, "a primitive with a terminal");
-        } else if (object.instances.empty() && !object.run) {
+        } else if (object.instances.empty() && !object.packed) {
             flaw(id, "an empty union");
         }
-        if (object.run) check_run(id, object);
+        if (object.packed) check_packed(id, object);
         for (std::size_t i = 0; i < object.instances.size(); ++i)
             check_instance(id, i, object.instances[i]);
         if (object.terminal) check_instance(id, std::nullopt, *object.terminal);
@@ -227,18 +226,15 @@ class Verifier {
             flaw(id, "a terminal drawn below {} px", object.terminal_px);
     }
 
-    void check_run(ObjectId id, const Object& object) {
+    void check_packed(ObjectId id, const Object& object) {
         if (object.primitive || !object.instances.empty() || object.terminal)
             flaw(id, "a run beside other parts");
-        if (object.run->empty()) flaw(id, "an empty run");
-        for (const std::optional<MaterialId>& material : object.run_materials)
+        if (object.packed.size() == 0) flaw(id, "an empty run");
+        for (const std::optional<MaterialId>& material : object.packed.materials)
             if (material && *material >= graph_.materials.size())
                 flaw(id, "a run has material {} of {}", *material, graph_.materials.size());
-        for (std::size_t i = 0; i < object.run->size(); ++i) {
-            const RunItem& item = (*object.run)[i];
-            if (!is_sound(item) || item.colour >= object.run_materials.size())
-                return flaw(id, "item {} of a run is not sound", i);
-        }
+        if (const std::optional<std::size_t> item = object.packed.unsound_item())
+            flaw(id, "item {} of a run is not sound", *item);
     }
 
     /// `index`: of the instance; nothing for a terminal.

@@ -19,7 +19,7 @@ std::vector<bool> find_empty(const Graph& graph) {
         for (const Instance& instance : object.instances)
             users[instance.master].push_back(id);
         left[id] = object.instances.size();
-        if (left[id] > 0 || object.primitive || object.run) continue;
+        if (left[id] > 0 || object.primitive || object.packed) continue;
         empty[id] = true;
         open.push_back(id);
     }

@@ -91,7 +91,7 @@ class HueStates {
             for (const Instance& instance : object.instances)
                 look(instance);
             if (object.terminal) look(*object.terminal);
-            for (const std::optional<MaterialId>& material : object.run_materials)
+            for (const std::optional<MaterialId>& material : object.packed.materials)
                 own = own || is_coloured(material);
             if (own) open.push_back(id);
             coloured_[id] = own;
@@ -115,13 +115,13 @@ class HueStates {
             turn_instance(instances[i], hues == hues_.end() ? HueTurn() : hues->second.instances[i], turn);
         std::optional<Instance> terminal = source.terminal;
         if (terminal) turn_instance(*terminal, hues == hues_.end() ? HueTurn() : hues->second.terminal, turn);
-        std::vector<std::optional<MaterialId>> run_materials = source.run_materials;
-        for (std::optional<MaterialId>& material : run_materials)
+        PackedEdges packed = source.packed;
+        for (std::optional<MaterialId>& material : packed.materials)
             material = turned(material, turn);
         Object& object = graph_.objects[id];
         object.instances = std::move(instances);
         object.terminal = std::move(terminal);
-        object.run_materials = std::move(run_materials);
+        object.packed = std::move(packed);
     }
 
     void turn_instance(Instance& instance, HueTurn own, HueTurn around) {

@@ -149,7 +149,7 @@ class InkStates {
         const std::optional<Ink> ink = change.apply(around);
         if (!ink) return;
         const Object& master = source_.objects[instance.master];
-        if (!master.primitive && !master.run) {
+        if (!master.primitive && !master.packed) {
             instance.master = state(instance.master, *ink);
             return;
         }

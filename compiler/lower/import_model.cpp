@@ -188,7 +188,7 @@ ObjectId append_objects(Graph& into, const Graph& from, std::string_view prefix,
         for (Instance& instance : object.instances)
             translate(instance);
         if (object.terminal) translate(*object.terminal);
-        for (std::optional<MaterialId>& material : object.run_materials)
+        for (std::optional<MaterialId>& material : object.packed.materials)
             if (material) material = materials[*material];
     }
     return ids[from.root];

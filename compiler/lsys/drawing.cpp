@@ -206,12 +206,11 @@ class Drawer {
 
     /// Module by module, by one turtle.
     std::optional<LsysDrawing> draw_run(Graph& graph) {
-        auto run = std::make_shared<Run>();
-        TurtleBodies bodies(graph, palette_);
+        TurtleBodies bodies(graph, palette_, true);
         TurtleContext context = turtle_context(bodies, diagnostics_, draws_lines(grammar_));
         context.open_width = width_is_open_ && draws_lines(grammar_);
         context.tallies = width_is_open_;
-        Turtle turtle(context, start(), run.get());
+        Turtle turtle(context, start());
         LsysStream stream(rewriter_, models_, diagnostics_, stream_options());
         if (!(word_ ? stream.draw(*word_, turtle) : stream.derive(turtle))) return std::nullopt;
         TurtlePart part = std::move(turtle).finish();
@@ -220,17 +219,14 @@ class Drawer {
             const double before = width_;
             set_width_for(part);
             if (context.open_width)
-                widen(*run, width_ / before);
+                bodies.widen_packed(width_ / before);
             else if ((part.reads & reads_width) && width_ != before)
                 return draw_run(graph); // '!' has mixed this width with others
         }
-        run->shrink_to_fit();
         variants_ = 1;
         roundings_ = {{}};
         LsysDrawing drawing = drawing_of(part, "derived", 1);
-        if (run->empty()) return drawing;
-        drawing.run = std::move(run);
-        drawing.run_materials = bodies.run_materials();
+        drawing.packed = bodies.take_packed();
         return drawing;
     }
 
@@ -241,7 +237,7 @@ class Drawer {
     /// From now on it is a run, if the word has no more modules than that; else it is composed after all.
     void try_run(std::uint64_t max_modules) {
         LsysStream::Options options = stream_options();
-        options.max_modules = std::min<std::uint64_t>({options.max_modules, max_modules, max_run_items});
+        options.max_modules = std::min<std::uint64_t>({options.max_modules, max_modules, max_packed_items});
         Diagnostics quiet;
         in_run_ = LsysStream(rewriter_, models_, quiet, options).count();
         may_give_up_ = false;

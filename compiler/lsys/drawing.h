@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <map>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -31,8 +30,7 @@ struct LsysDrawOptions {
 
 struct LsysDrawing {
     std::vector<Instance> instances; ///< the whole model, in world space
-    std::shared_ptr<const Run> run;  ///< with what is here, if anything is
-    std::vector<std::optional<MaterialId>> run_materials;
+    PackedEdges packed;              ///< more of it
     Derivation derivation;
     bool limited_by_work = false; ///< with more work allowed it would be another
 };

@@ -372,7 +372,7 @@ class LsysLowering {
         }
         const bool is_idle =
             steps == 0u && !is_asked_for_steps(block, grammar) && grammar.has_rules(RuleKind::produce);
-        if (drawing->instances.empty() && !drawing->run) {
+        if (drawing->instances.empty() && !drawing->packed) {
             report_nothing(block, steps, is_idle);
             return std::nullopt;
         }
@@ -431,22 +431,20 @@ class LsysLowering {
         return reports;
     }
 
-    /// The root of a block. A run makes an object of its own, unless it is all.
+    /// The root of a block. Packed edges make an object of their own, unless they are all.
     std::optional<ObjectId> add_root(const LsysBlock& block, LsysDrawing drawing) {
         Object root;
         root.name = pool_.unique_name(block.name.text);
         root.span = block.name.span;
-        Object* of_run = &root;
-        Object parts;
-        if (drawing.run && !drawing.instances.empty()) {
+        if (drawing.packed && !drawing.instances.empty()) {
+            Object parts;
             parts.name = pool_.unique_name(fmt::format("{}_parts", block.name.text));
             parts.span = root.span;
-            of_run = &parts;
+            parts.packed = std::exchange(drawing.packed, {});
+            drawing.instances.push_back({graph_.add(std::move(parts)), {}, {}, {}, root.span});
         }
-        of_run->run = std::move(drawing.run);
-        of_run->run_materials = std::move(drawing.run_materials);
+        root.packed = std::move(drawing.packed);
         root.instances = std::move(drawing.instances);
-        if (parts.run) root.instances.push_back({graph_.add(std::move(parts)), {}, {}, {}, root.span});
         const ObjectId id = graph_.add(std::move(root));
         if (!within_limits(graph_.objects.size(), instance_count(graph_), block.name.span, lowering_))
             return std::nullopt;

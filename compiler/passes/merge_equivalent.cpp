@@ -224,17 +224,17 @@ class Refinement {
         const bool coloured = alike == Alike::in_all;
         const auto same_kind = [&](ObjectId a, ObjectId b) {
             return graph.objects[a].primitive == graph.objects[b].primitive &&
-                   graph.objects[a].run == graph.objects[b].run &&
-                   (!coloured || graph.objects[a].run_materials == graph.objects[b].run_materials) &&
+                   graph.objects[a].packed.run == graph.objects[b].packed.run &&
+                   (!coloured || graph.objects[a].packed.materials == graph.objects[b].packed.materials) &&
                    edges_.labels_of[a] == edges_.labels_of[b];
         };
         std::sort(order.begin(), order.end(), [&](ObjectId a, ObjectId b) {
             if (graph.objects[a].primitive != graph.objects[b].primitive)
                 return graph.objects[a].primitive < graph.objects[b].primitive;
-            const Object &x = graph.objects[a], &y = graph.objects[b];
+            const PackedEdges &x = graph.objects[a].packed, &y = graph.objects[b].packed;
             // Whichever comes first, the blocks are the same.
             if (x.run != y.run) return std::less<>()(x.run.get(), y.run.get());
-            if (coloured && x.run_materials != y.run_materials) return x.run_materials < y.run_materials;
+            if (coloured && x.materials != y.materials) return x.materials < y.materials;
             if (edges_.labels_of[a] != edges_.labels_of[b]) return edges_.labels_of[a] < edges_.labels_of[b];
             return a < b;
         });

@@ -20,13 +20,13 @@ template<typename Visit> void for_each_instance(Graph& graph, const Visit& visit
     }
 }
 
-/// Calls `visit` on the material of every instance, terminal and colour of a run that has one.
+/// Calls `visit` on the material of every instance, terminal and packed edge that has one.
 template<typename Visit> void for_each_material(Graph& graph, const Visit& visit) {
     for_each_instance(graph, [&](Instance& instance) {
         if (instance.material) visit(*instance.material);
     });
     for (Object& object : graph.objects)
-        for (std::optional<MaterialId>& material : object.run_materials)
+        for (std::optional<MaterialId>& material : object.packed.materials)
             if (material) visit(*material);
 }
 

@@ -80,13 +80,13 @@ class GraphShape {
 
     bool alike(ObjectId a, ObjectId b) const {
         const Object &x = graph_.objects[a], &y = graph_.objects[b];
-        return x.primitive == y.primitive && x.run == y.run && x.terminal_px == y.terminal_px &&
+        return x.primitive == y.primitive && x.packed.run == y.packed.run && x.terminal_px == y.terminal_px &&
                components_.unending[a] == components_.unending[b] &&
                bounds_[a].unbounded == bounds_[b].unbounded;
     }
 
-    /// True for a run, whose parts are no instances.
-    bool fixed(ObjectId id) const { return graph_.objects[id].run != nullptr; }
+    /// True for packed edges, which are no instances.
+    bool fixed(ObjectId id) const { return bool(graph_.objects[id].packed); }
     double radius(ObjectId id) const { return std::max(bounds_[id].ball.radius, 0.0); }
     const Affine* proxy(ObjectId id) const {
         return components_.unending[id] && !graph_.objects[id].terminal ? &proxies_[id] : nullptr;

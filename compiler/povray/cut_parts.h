@@ -9,7 +9,7 @@
 
 #include "compiler/detail/mesh/mesh.h"
 #include "compiler/graph/graph.h"
-#include "compiler/povray/run_placements.h"
+#include "compiler/povray/packed_placements.h"
 #include "compiler/povray/units.h"
 
 namespace graftal {
@@ -20,11 +20,6 @@ struct Body {
     std::variant<Primitive, Mesh> shape;
 };
 
-struct Placement {
-    std::uint32_t body = 0;
-    Affine world_from_body;
-};
-
 /// Placements that share a texture: a palette, one tint in front of it, and a finish (the material's rgb is
 /// already in the palette). Where the palette has one colour the tint is already in it too. If the material
 /// has a picture it stands in the palette's place, behind the tint.
@@ -33,23 +28,15 @@ struct PlacementGroup {
     PathTint tint;
     Material material;
     std::vector<Placement> placements;
-    std::vector<RunPlacements> runs; ///< more placements, see for_each_placement()
+    std::vector<PackedPlacements> packed; ///< more placements
 };
 
-/// Calls `visit` on a Placement for each part.
-template<typename Visit> void for_each_placement(const RunPlacements& parts, const Visit& visit) {
-    for_each_part(parts, [&](RunShape shape, const RunItem& item, bool ball) {
-        const Affine run_from_part = ball ? run_from_round_ball(item) : run_from_round_body(item);
-        visit(Placement{parts.body[shape.index()], parts.world_from_run * run_from_part});
-    });
-}
-
-/// Calls `visit` on each Placement of the group, those of runs too, which are made for it one by one.
+/// Calls `visit` on each Placement of the group.
 template<typename Visit> void for_each_placement(const PlacementGroup& group, const Visit& visit) {
     for (const Placement& placement : group.placements)
         visit(placement);
-    for (const RunPlacements& parts : group.runs)
-        for_each_placement(parts, visit);
+    for (const PackedPlacements& parts : group.packed)
+        parts.for_each(visit);
 }
 
 struct Cut : DrawnExtent {

@@ -8,10 +8,6 @@
 namespace graftal {
 namespace {
 
-Ball ball(const Primitive&) {
-    return {Vec3(0.0), 1};
-}
-
 Vec3 support_point(const Primitive&, Vec3 direction) {
     return farther(direction, Vec3(0, 1, 0), farthest_on_circle(direction, 0));
 }
@@ -43,23 +39,7 @@ bool intersect(const Primitive&, const Ray& ray, const RayRange& range, Primitiv
 
 } // namespace
 
-constinit const PrimitiveTraits cone_traits = {
-    .box = tapered_box,
-    .ball = ball,
-    .support_point = support_point,
-    .hull = hull,
-    .convex_parts = tapered_convex_parts,
-    .inner_radius = tapered_inner_radius,
-    .fixed_point = tapered_fixed_point,
-    .keeps = tapered_keeps,
-    .max_fineness = finest_tapered_mesh,
-    .mesh = mesh,
-    .mesh_error = tapered_mesh_error,
-    .wrap = tapered_wrap,
-    .texture_point = tapered_texture_point,
-    .area = tapered_area,
-    .site = tapered_site,
-    .intersect = intersect,
-};
+constinit const PrimitiveTraits cone_traits =
+    tapered_row({.support_point = support_point, .hull = hull, .mesh = mesh, .intersect = intersect});
 
 } // namespace graftal

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/primitives/passage.h"
-#include "compiler/primitives/primitive.h"
+#include "compiler/primitives/shape_parts.h"
 #include "compiler/primitives/symmetry_maps.h"
 
 namespace graftal {
@@ -25,15 +25,6 @@ Vec3 support_point(const Primitive&, Vec3 direction) {
             std::copysign(1.0, direction.z)};
 }
 
-std::vector<HullPiece> hull(const Primitive&) {
-    std::vector<HullPiece> pieces;
-    for (const double x : {-1, 1})
-        for (const double y : {-1, 1})
-            for (const double z : {-1, 1})
-                pieces.push_back({HullPiece::Kind::point, Affine::translate(Vec3(x, y, z))});
-    return pieces;
-}
-
 std::vector<ConvexPart> convex_parts(const Primitive&) {
     ConvexPart part{{}, 4};
     for (const double z : {-1.0, 1.0})
@@ -43,10 +34,6 @@ std::vector<ConvexPart> convex_parts(const Primitive&) {
 
 double inner_radius(const Primitive&) {
     return 1;
-}
-
-Vec3 fixed_point(const Primitive&) {
-    return Vec3(0.0);
 }
 
 /// Orthogonal with columns of 1-norm 1: a signed permutation.
@@ -74,10 +61,6 @@ TessellatedPrimitive mesh(const Primitive&, int) {
                               {{w, w | u, w | u | v}, {w, w | u | v, w | v}, {0, u | v, u}, {0, v, u | v}});
     }
     return mesh;
-}
-
-double mesh_error(const Primitive&, int) {
-    return 0;
 }
 
 std::vector<FacetCorners> facets(const Primitive&) {
@@ -127,23 +110,20 @@ bool intersect(const Primitive&, const Ray& ray, const RayRange& range, Primitiv
 
 } // namespace
 
-constinit const PrimitiveTraits cube_traits = {
+constinit const PrimitiveTraits cube_traits = flat_row({
     .box = box,
     .ball = ball,
     .support_point = support_point,
-    .hull = hull,
     .convex_parts = convex_parts,
     .inner_radius = inner_radius,
-    .fixed_point = fixed_point,
     .keeps = keeps,
     .mesh = mesh,
-    .mesh_error = mesh_error,
     .facets = facets,
     .solid = true,
     .texture_point = texture_point,
     .area = area,
     .site = site,
     .intersect = intersect,
-};
+});
 
 } // namespace graftal

@@ -7,6 +7,11 @@
 namespace graftal {
 namespace {
 
+/// A column that nobody asks for.
+template<typename Answer, typename... Asked> Answer without_end(const Primitive&, Asked...) {
+    GRAFTAL_CHECK(false, "a plane has no end: it has no bounds, mesh, area and shadow");
+}
+
 Box box(const Primitive&) {
     return {};
 }
@@ -15,48 +20,16 @@ Ball ball(const Primitive&) {
     return {};
 }
 
-Vec3 support_point(const Primitive&, Vec3) {
-    GRAFTAL_CHECK(false, "a plane has no support function");
-}
-
-std::vector<HullPiece> hull(const Primitive&) {
-    GRAFTAL_CHECK(false, "a plane has no ball");
-}
-
-std::vector<ConvexPart> convex_parts(const Primitive&) {
-    GRAFTAL_CHECK(false, "a plane has no shadow");
-}
-
 double inner_radius(const Primitive&) {
     return 0.5;
-}
-
-Vec3 fixed_point(const Primitive&) {
-    return Vec3(0.0);
 }
 
 bool keeps(const Primitive&, const Affine& map) {
     return turns_about_origin(map) && keeps_y_axis(map.linear) && map.linear[1][1] > 0;
 }
 
-TessellatedPrimitive mesh(const Primitive&, int) {
-    GRAFTAL_CHECK(false, "tessellate: a plane has no mesh");
-}
-
-double mesh_error(const Primitive&, int) {
-    GRAFTAL_CHECK(false, "tessellate: a plane has no mesh");
-}
-
 TexturePoint texture_point(const Primitive&, const TextureSpace& space, Vec3 point) {
     return {turn_about_y(space, point), 0};
-}
-
-double area(const Primitive&) {
-    GRAFTAL_CHECK(false, "a plane has no area");
-}
-
-SurfaceSite site(const Primitive&, Vec3) {
-    GRAFTAL_CHECK(false, "a plane has no random points");
 }
 
 bool intersect(const Primitive&, const Ray& ray, const RayRange& range, PrimitiveHit& hit) {
@@ -73,17 +46,17 @@ constinit const PrimitiveTraits plane_traits = {
     .bounded = false,
     .box = box,
     .ball = ball,
-    .support_point = support_point,
-    .hull = hull,
-    .convex_parts = convex_parts,
+    .support_point = without_end,
+    .hull = without_end,
+    .convex_parts = without_end,
     .inner_radius = inner_radius,
-    .fixed_point = fixed_point,
+    .fixed_point = origin_of,
     .keeps = keeps,
-    .mesh = mesh,
-    .mesh_error = mesh_error,
+    .mesh = without_end,
+    .mesh_error = without_end,
     .texture_point = texture_point,
-    .area = area,
-    .site = site,
+    .area = without_end,
+    .site = without_end,
     .intersect = intersect,
 };
 

@@ -108,28 +108,10 @@ Vec3 support_point(const Primitive& primitive, Vec3 direction) {
     return farthest_of(form_of(primitive).points, direction);
 }
 
-std::vector<HullPiece> hull(const Primitive& primitive) {
-    std::vector<HullPiece> pieces;
-    for (const Vec3& point : form_of(primitive).points)
-        pieces.push_back({HullPiece::Kind::point, Affine::translate(point)});
-    return pieces;
-}
-
-std::vector<ConvexPart> convex_parts(const Primitive& primitive) {
-    std::vector<ConvexPart> parts;
-    for (const Triangle& piece : form_of(primitive).pieces)
-        parts.push_back({{piece.begin(), piece.end()}, 0});
-    return parts;
-}
-
 /// About the inner radius of a disc as large.
 double inner_radius(const Primitive& primitive) {
     const Vec3 size = form_of(primitive).box.size();
     return 0.5 * std::max(std::min(size.x, size.y), 1e-3 * std::max(size.x, size.y));
-}
-
-Vec3 fixed_point(const Primitive& primitive) {
-    return form_of(primitive).box.centre();
 }
 
 /// Maps that move no point of its plane: other symmetries are not looked for.
@@ -141,17 +123,6 @@ bool keeps(const Primitive&, const Affine& map) {
 TessellatedPrimitive mesh(const Primitive& primitive, int) {
     const Polygon& form = form_of(primitive);
     return {.vertices = form.points, .normals = {}, .triangles = form.triangles};
-}
-
-double mesh_error(const Primitive&, int) {
-    return 0;
-}
-
-std::vector<FacetCorners> facets(const Primitive& primitive) {
-    std::vector<FacetCorners> facets;
-    for (const auto& [a, b, c] : form_of(primitive).triangles)
-        facets.push_back({a, b, c, no_facet_corner});
-    return facets;
 }
 
 /// The picture over the polygon's box.
@@ -185,24 +156,19 @@ const PolygonRings& rings_of(const Primitive& polygon) {
     return form_of(polygon).rings;
 }
 
-constinit const PrimitiveTraits polygon_traits = {
+constinit const PrimitiveTraits polygon_traits = flat_row({
     .arguments = {6, 2 * most_corners},
     .make = make,
     .box = box,
     .ball = ball,
     .support_point = support_point,
-    .hull = hull,
-    .convex_parts = convex_parts,
     .inner_radius = inner_radius,
-    .fixed_point = fixed_point,
     .keeps = keeps,
     .mesh = mesh,
-    .mesh_error = mesh_error,
-    .facets = facets,
     .texture_point = texture_point,
     .area = area,
     .site = site,
     .intersect = intersect,
-};
+});
 
 } // namespace graftal

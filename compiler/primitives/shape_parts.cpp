@@ -9,6 +9,14 @@
 
 namespace graftal {
 
+namespace {
+
+TessellatedPrimitive exact_mesh(const Primitive& primitive) {
+    return traits_of(primitive).mesh(primitive, 0);
+}
+
+} // namespace
+
 std::string shape_name(PrimitiveKind kind, std::span<const double> numbers) {
     std::string name(name_of(kind));
     const char* separator = "(";
@@ -45,6 +53,38 @@ Ball ball_about(std::span<const Vec3> points) {
 Vec3 farthest_of(std::span<const Vec3> points, Vec3 direction) {
     return *std::ranges::max_element(points, {},
                                      [&](const Vec3& point) { return glm::dot(point, direction); });
+}
+
+std::vector<HullPiece> hull_of_mesh(const Primitive& primitive) {
+    const TessellatedPrimitive mesh = exact_mesh(primitive);
+    std::vector<HullPiece> pieces;
+    for (const Vec3& corner : mesh.vertices)
+        pieces.push_back({HullPiece::Kind::point, Affine::translate(corner)});
+    return pieces;
+}
+
+std::vector<ConvexPart> triangles_of_mesh(const Primitive& primitive) {
+    const TessellatedPrimitive mesh = exact_mesh(primitive);
+    std::vector<ConvexPart> parts;
+    for (const auto& [a, b, c] : mesh.triangles)
+        parts.push_back({{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, 0});
+    return parts;
+}
+
+std::vector<FacetCorners> facets_of_mesh(const Primitive& primitive) {
+    const TessellatedPrimitive mesh = exact_mesh(primitive);
+    std::vector<FacetCorners> facets;
+    for (const auto& [a, b, c] : mesh.triangles)
+        facets.push_back({a, b, c, no_facet_corner});
+    return facets;
+}
+
+Vec3 centre_of_box(const Primitive& primitive) {
+    return traits_of(primitive).box(primitive).centre();
+}
+
+double exact_mesh_error(const Primitive&, int) {
+    return 0;
 }
 
 } // namespace graftal

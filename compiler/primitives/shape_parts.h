@@ -1,6 +1,6 @@
 #pragma once
 
-// Parts that primitives with shapes share.
+// Parts that primitives share.
 
 #include <array>
 #include <span>
@@ -32,5 +32,22 @@ Vec3 point_of(const Triangle& triangle, double u, double v);
 Ball ball_about(std::span<const Vec3> points);
 Box box_about(std::span<const Vec3> points);
 Vec3 farthest_of(std::span<const Vec3> points, Vec3 direction);
+
+// Columns of primitives whose mesh is exact, from that mesh and the box.
+std::vector<HullPiece> hull_of_mesh(const Primitive& primitive);
+std::vector<ConvexPart> triangles_of_mesh(const Primitive& primitive);
+std::vector<FacetCorners> facets_of_mesh(const Primitive& primitive);
+Vec3 centre_of_box(const Primitive& primitive);
+double exact_mesh_error(const Primitive& primitive, int fineness);
+
+/// A whole row of a primitive whose mesh is exact: its own columns, and where it has none those above.
+constexpr PrimitiveTraits flat_row(PrimitiveTraits own) {
+    if (!own.hull) own.hull = hull_of_mesh;
+    if (!own.convex_parts) own.convex_parts = triangles_of_mesh;
+    if (!own.facets) own.facets = facets_of_mesh;
+    if (!own.fixed_point) own.fixed_point = centre_of_box;
+    own.mesh_error = exact_mesh_error;
+    return own;
+}
 
 } // namespace graftal

@@ -38,10 +38,6 @@ double inner_radius(const Primitive&) {
     return 1;
 }
 
-Vec3 fixed_point(const Primitive&) {
-    return Vec3(0.0);
-}
-
 bool keeps(const Primitive&, const Affine& map) {
     return turns_about_origin(map);
 }
@@ -154,7 +150,7 @@ constinit const PrimitiveTraits sphere_traits = {
     .hull = hull,
     .convex_parts = convex_parts,
     .inner_radius = inner_radius,
-    .fixed_point = fixed_point,
+    .fixed_point = origin_of,
     .keeps = keeps,
     .max_fineness = 6,
     .mesh = mesh,

@@ -194,10 +194,6 @@ double inner_radius(const Primitive&) {
     return 0.5; // of the octahedron 0.58
 }
 
-Vec3 fixed_point(const Primitive&) {
-    return Vec3(0.0);
-}
-
 /// Signs of the axes, and x and z exchanged.
 bool keeps(const Primitive&, const Affine& map) {
     if (!turns_about_origin(map) || !keeps_y_axis(map.linear)) return false;
@@ -320,7 +316,7 @@ constinit const PrimitiveTraits superellipsoid_traits = {
     .hull = hull,
     .convex_parts = convex_parts,
     .inner_radius = inner_radius,
-    .fixed_point = fixed_point,
+    .fixed_point = origin_of,
     .keeps = keeps,
     .max_fineness = finest,
     .mesh = mesh,

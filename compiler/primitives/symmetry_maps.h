@@ -1,5 +1,6 @@
 #pragma once
 
+#include "compiler/graph/primitive.h"
 #include "compiler/support/affine.h"
 
 namespace graftal {
@@ -14,6 +15,11 @@ bool is_orthogonal(const Mat3& m);
 
 /// Whether it is an isometry that leaves the origin where it is.
 bool turns_about_origin(const Affine& map);
+
+/// The point that such maps leave where it is, as a column of the table of primitives.
+inline Vec3 origin_of(const Primitive&) {
+    return Vec3(0.0);
+}
 
 /// Whether an orthogonal map takes the y axis to itself, perhaps turned over.
 bool keeps_y_axis(const Mat3& m);

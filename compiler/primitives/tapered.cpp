@@ -33,6 +33,17 @@ Box tapered_box(const Primitive&) {
     return {{-1, 0, -1}, {1, 1, 1}};
 }
 
+/// Through the rims of both caps.
+Ball tapered_ball(const Primitive& primitive) {
+    const double top = top_radius(primitive), middle = top * top / 2;
+    return {{0, middle, 0}, std::hypot(1.0, middle)};
+}
+
+std::vector<HullPiece> tapered_hull(const Primitive& primitive) {
+    const Affine top = Affine::translate({0, 1, 0}) * Affine::scale(Vec3(top_radius(primitive)));
+    return {{HullPiece::Kind::disc, Affine()}, {HullPiece::Kind::disc, top}};
+}
+
 /// A prism or pyramid in place of what is round about the y axis, as long around: the shadows of slender
 /// ones, which are what there are most of, are as wide.
 std::vector<ConvexPart> tapered_convex_parts(const Primitive& primitive) {
@@ -92,8 +103,9 @@ int prism_sides(int fineness) {
     return 3 << fineness;
 }
 
-TessellatedPrimitive tapered_mesh(int fineness, double top) {
+TessellatedPrimitive tapered_mesh(const Primitive& primitive, int fineness) {
     TessellatedPrimitive mesh;
+    const double top = top_radius(primitive);
     const int n = prism_sides(fineness);
     const double radius = balanced_radius(n);
     for (int i = 0; i < n; ++i)

@@ -16,6 +16,7 @@ double top_radius(const Primitive& primitive);
 
 // Columns of their rows (primitive.h).
 Box tapered_box(const Primitive& primitive);
+Ball tapered_ball(const Primitive& primitive);
 std::vector<ConvexPart> tapered_convex_parts(const Primitive& primitive);
 double tapered_inner_radius(const Primitive& primitive);
 Vec3 tapered_fixed_point(const Primitive& primitive);
@@ -24,14 +25,29 @@ double tapered_mesh_error(const Primitive& primitive, int fineness);
 TexturePoint tapered_texture_point(const Primitive& primitive, const TextureSpace& space, Vec3 point);
 double tapered_area(const Primitive& primitive);
 SurfaceSite tapered_site(const Primitive& primitive, Vec3 choice);
+// Columns of those with two caps.
+std::vector<HullPiece> tapered_hull(const Primitive& primitive);
+TessellatedPrimitive tapered_mesh(const Primitive& primitive, int fineness);
 
-inline constexpr int finest_tapered_mesh = 8;
-inline constexpr TextureWrap tapered_wrap{.around = true, .along = true};
+/// A whole row: the columns that differ, and those that all three share.
+constexpr PrimitiveTraits tapered_row(PrimitiveTraits own) {
+    own.box = tapered_box;
+    own.ball = tapered_ball;
+    own.convex_parts = tapered_convex_parts;
+    own.inner_radius = tapered_inner_radius;
+    own.fixed_point = tapered_fixed_point;
+    own.keeps = tapered_keeps;
+    own.max_fineness = 8;
+    own.mesh_error = tapered_mesh_error;
+    own.wrap = {.around = true, .along = true};
+    own.texture_point = tapered_texture_point;
+    own.area = tapered_area;
+    own.site = tapered_site;
+    return own;
+}
 
 /// Number of sides of a prism or pyramid of this fineness.
 int prism_sides(int fineness);
-/// The mesh of what has two caps, and normals.
-TessellatedPrimitive tapered_mesh(int fineness, double top);
 /// A cap of n corners, spokes of the given radius at height y. It is cut into triangles of three equal arcs
 /// and then of halves of arcs: no slivers around one corner.
 void add_cap(TessellatedPrimitive& mesh, int n, double radius, double y, bool facing_up);

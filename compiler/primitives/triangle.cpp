@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/primitives/passage.h"
-#include "compiler/primitives/primitive.h"
+#include "compiler/primitives/shape_parts.h"
 #include "compiler/primitives/support_points.h"
 #include "compiler/primitives/symmetry_maps.h"
 
@@ -32,24 +32,8 @@ Vec3 support_point(const Primitive&, Vec3 direction) {
     return farther(direction, top, farther(direction, left, right));
 }
 
-std::vector<HullPiece> hull(const Primitive&) {
-    std::vector<HullPiece> pieces;
-    for (const Vec3& corner : corners())
-        pieces.push_back({HullPiece::Kind::point, Affine::translate(corner)});
-    return pieces;
-}
-
-std::vector<ConvexPart> convex_parts(const Primitive&) {
-    const auto all = corners();
-    return {{{all.begin(), all.end()}, 0}};
-}
-
 double inner_radius(const Primitive&) {
     return 0.5;
-}
-
-Vec3 fixed_point(const Primitive&) {
-    return Vec3(0.0);
 }
 
 bool keeps(const Primitive&, const Affine& map) {
@@ -63,14 +47,6 @@ bool keeps(const Primitive&, const Affine& map) {
 TessellatedPrimitive mesh(const Primitive&, int) {
     const auto [top, left, right] = corners();
     return {.vertices = {top, left, right}, .normals = {}, .triangles = {{0, 1, 2}}};
-}
-
-double mesh_error(const Primitive&, int) {
-    return 0;
-}
-
-std::vector<FacetCorners> facets(const Primitive&) {
-    return {{0, 1, 2, no_facet_corner}};
 }
 
 /// The picture over the triangle's box.
@@ -101,22 +77,18 @@ bool intersect(const Primitive&, const Ray& ray, const RayRange& range, Primitiv
 
 } // namespace
 
-constinit const PrimitiveTraits triangle_traits = {
+constinit const PrimitiveTraits triangle_traits = flat_row({
     .box = box,
     .ball = ball,
     .support_point = support_point,
-    .hull = hull,
-    .convex_parts = convex_parts,
     .inner_radius = inner_radius,
-    .fixed_point = fixed_point,
+    .fixed_point = origin_of,
     .keeps = keeps,
     .mesh = mesh,
-    .mesh_error = mesh_error,
-    .facets = facets,
     .texture_point = texture_point,
     .area = area,
     .site = site,
     .intersect = intersect,
-};
+});
 
 } // namespace graftal

@@ -181,10 +181,6 @@ double inner_radius(const Primitive& primitive) {
     return 0.25 * std::max(std::min({size.x, size.y, size.z}), 1e-2 * largest);
 }
 
-Vec3 fixed_point(const Primitive& primitive) {
-    return form_of(primitive).box.centre();
-}
-
 /// Nothing but the identity: symmetries of meshes are not looked for.
 bool keeps(const Primitive&, const Affine& map) {
     return glm::length(map.translation) < symmetry_tolerance && is_near_zero(map.linear - Mat3(1.0), 1);
@@ -193,17 +189,6 @@ bool keeps(const Primitive&, const Affine& map) {
 TessellatedPrimitive mesh(const Primitive& primitive, int) {
     const MeshData& data = form_of(primitive).data;
     return {.vertices = data.vertices, .normals = data.normals, .triangles = data.triangles};
-}
-
-double mesh_error(const Primitive&, int) {
-    return 0;
-}
-
-std::vector<FacetCorners> facets(const Primitive& primitive) {
-    std::vector<FacetCorners> facets;
-    for (const auto& [a, b, c] : form_of(primitive).data.triangles)
-        facets.push_back({a, b, c, no_facet_corner});
-    return facets;
 }
 
 TexturePoint texture_point(const Primitive& primitive, const TextureSpace&, Vec3 point) {

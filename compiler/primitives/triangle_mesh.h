@@ -39,11 +39,8 @@ double reach(const Primitive& primitive, Vec3 direction);
 std::vector<HullPiece> hull(const Primitive& primitive);
 std::vector<ConvexPart> convex_parts(const Primitive& primitive);
 double inner_radius(const Primitive& primitive);
-Vec3 fixed_point(const Primitive& primitive);
 bool keeps(const Primitive& primitive, const Affine& map);
 TessellatedPrimitive mesh(const Primitive& primitive, int fineness);
-double mesh_error(const Primitive& primitive, int fineness);
-std::vector<FacetCorners> facets(const Primitive& primitive);
 TexturePoint texture_point(const Primitive& primitive, const TextureSpace& space, Vec3 point);
 std::array<TexturePoint, 3> texture_triangle(const Primitive& primitive, const std::array<Vec3, 3>& points);
 double area(const Primitive& primitive);
@@ -56,7 +53,7 @@ bool intersect_within(const Primitive& primitive, const Ray& ray, const RayRange
 constexpr PrimitiveTraits traits(PrimitiveArguments arguments = {},
                                  std::optional<Primitive> (*make)(std::span<const double>,
                                                                   std::string&) = nullptr) {
-    return {
+    return flat_row({
         .arguments = arguments,
         .make = make,
         .box = box,
@@ -66,18 +63,15 @@ constexpr PrimitiveTraits traits(PrimitiveArguments arguments = {},
         .hull = hull,
         .convex_parts = convex_parts,
         .inner_radius = inner_radius,
-        .fixed_point = fixed_point,
         .keeps = keeps,
         .mesh = mesh,
-        .mesh_error = mesh_error,
-        .facets = facets,
         .texture_point = texture_point,
         .texture_triangle = texture_triangle,
         .area = area,
         .site = site,
         .intersect = intersect,
         .intersect_within = intersect_within,
-    };
+    });
 }
 
 } // namespace triangle_mesh

@@ -8,7 +8,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "compiler/graph/run.h"
 #include "compiler/support/counter_random.h"
 
 namespace graftal {
@@ -34,9 +33,9 @@ Rgb colour_of_path(const Graph& graph, Rolls& rolls) {
     ObjectId at = graph.root;
     for (int step = 0; step < path_length; ++step) {
         const Object& object = graph.objects[at];
-        if (object.run) {
-            const RunItem& item = (*object.run)[rolls.next(object.run->size())];
-            if (const auto material = object.run_materials[item.colour])
+        if (object.packed) {
+            const std::size_t item = rolls.next(object.packed.item_count());
+            if (const auto material = object.packed.material_of_item(item))
                 base = graph.materials[*material].rgb;
         }
         if (object.primitive || object.instances.empty()) break;

@@ -77,7 +77,7 @@ class Outline {
         if (box.empty()) return; // nothing but planes
         Piece piece{world_from_object, object, longest_axis(box, world_from_object), box};
         if (graph_.objects[object].primitive) piece.size = 0;
-        if (graph_.objects[object].run) piece.level = bounds_[object].run->level_count() - 1;
+        if (graph_.objects[object].packed) piece.level = bounds_[object].run->level_count() - 1;
         pieces_.push_back(piece);
     }
 
@@ -114,7 +114,7 @@ class Outline {
     bool unfold_last() {
         const Piece piece = pieces_.back();
         const Object& object = graph_.objects[piece.object];
-        if (object.run) return unfold_last_range();
+        if (object.packed) return unfold_last_range();
         if (piece.size <= small_ || pieces_.size() + object.instances.size() > most_pieces) return false;
         pieces_.pop_back();
         for (const Instance& instance : object.instances)

@@ -186,7 +186,7 @@ bool shows_blur(const Graph& graph, const View& view) {
     };
     return (view.ground && view.ground->material.is_blurred()) ||
            std::ranges::any_of(graph.objects, [&](const Object& object) {
-               return std::ranges::any_of(object.run_materials, blurred) ||
+               return std::ranges::any_of(object.packed.materials, blurred) ||
                       std::ranges::any_of(object.instances,
                                           [&](const Instance& part) { return blurred(part.material); });
            });

@@ -190,8 +190,7 @@ std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<A
     model.path = std::move(lowered.path);
     model.derivation = std::move(lowered.notes.derivation);
     if (!lowered.graph) return model;
-    const std::size_t instances = instance_count(*lowered.graph);
-    model.written = {lowered.graph->objects.size(), instances + run_part_count(*lowered.graph)};
+    model.written = {lowered.graph->objects.size(), edge_count(*lowered.graph)};
     // Names are those of the text only here: equal objects are merged next.
     if (at) {
         model.at = find_path(*lowered.graph, *at, diagnostics);

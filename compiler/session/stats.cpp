@@ -123,7 +123,7 @@ Json json_of(const AnalysedModel& model, std::optional<unsigned> steps, const So
         {"model", model.path},
         {"language", model_language(sources)},
         {"objects", graph.objects.size()},
-        {"instances", instance_count(graph) + run_part_count(graph)},
+        {"instances", edge_count(graph)},
         {"written", {{"objects", model.written.objects}, {"instances", model.written.instances}}},
         {"steps", or_null(model.derivation ? model.derivation->steps : steps)},
         {"primitives", empty ? Json("0") : or_null(count_leaves(graph, model.components, steps))},

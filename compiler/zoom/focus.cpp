@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "compiler/graph/run.h"
+#include "compiler/analysis/run_bounds.h"
 #include "compiler/primitives/primitive.h"
 
 namespace graftal {
@@ -51,30 +51,6 @@ Vec3 pulled_down(const Graph& graph, const GraphPath& path, Vec3 direction) {
         direction = pulled / glm::length(pulled);
     }
     return direction;
-}
-
-/// A point of the item that lies nearest to `point`: on its side, farthest towards the eye.
-Vec3 surface_of_run(const Run& run, Vec3 point, Vec3 to_eye) {
-    Vec3 seen(0.0);
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < run.size(); ++i) {
-        const RunItem& item = run[i];
-        const bool round = item.shape.is_sphere();
-        const double square = glm::dot(item.axis, item.axis);
-        const double share = round || !(square > 0)
-                                 ? 0
-                                 : std::clamp(glm::dot(point - item.base, item.axis) / square, 0.0, 1.0);
-        const Vec3 inside = item.base + share * item.axis;
-        const double distance = glm::distance(inside, point) - item.radius;
-        if (!(distance < nearest)) continue;
-        nearest = distance;
-        const Vec3 out =
-            round || !(square > 0) ? to_eye : to_eye - glm::dot(to_eye, item.axis) / square * item.axis;
-        const double length = glm::length(out), narrowing = item.ball ? 0 : 1 - item.shape.top_radius();
-        seen =
-            length > 0 ? inside + item.radius * (round ? 1 : 1 - share * narrowing) / length * out : inside;
-    }
-    return seen;
 }
 
 /// True, by object, if a path along maps that can be inverted leads on from it for ever.
@@ -234,15 +210,17 @@ Focus focus_near_point(const Graph& graph, const std::vector<ObjectBounds>& boun
     PointWalk walk(graph, bounds, point, true);
     for (std::size_t i = 0; i < most_steps && walk.log2_size() + zoom.log2() > -margin; ++i)
         if (!walk.step()) break;
-    const Object& last = graph.objects[walk.object()];
+    const ObjectId object = walk.object();
+    const Object& last = graph.objects[object];
     const Vec3 nearest = walk.point();
     GraphPath path = std::move(walk).path();
-    if (!(last.primitive || last.run) || path.endless()) return focus_of_path(graph, bounds, std::move(path));
+    if (!(last.primitive || last.packed) || path.endless())
+        return focus_of_path(graph, bounds, std::move(path));
     Focus focus;
     focus.path = std::move(path);
     const Vec3 direction = pulled_down(graph, focus.path, to_eye);
-    const Vec3 seen = last.run ? surface_of_run(*last.run, nearest, direction)
-                               : traits_of(*last.primitive).support_point(*last.primitive, direction);
+    const Vec3 seen = last.packed ? bounds[object].run->surface_near(nearest, direction)
+                                  : traits_of(*last.primitive).support_point(*last.primitive, direction);
     pull_up(graph, focus, seen, focus.path.steps.size());
     return focus;
 }

@@ -253,17 +253,11 @@ class SceneBuilder {
     }
 
     void fill_cell(const SceneTask& task, const CutNode& node, double errors) {
-        const auto add = [&](const CutEdge& edge, const Primitive& primitive) {
+        node.cell->for_each([&](const CellEdge& edge) {
             if (++parts_ > limits_.parts) throw SceneTooLarge();
             meter_.add();
-            leaf(primitive, errors * edge.stretch);
-        };
-        const RunCell& cell = *node.cell;
-        for (std::size_t i = cell.first; i < cell.first + cell.count; ++i) {
-            const RunItem& item = (*cell.source->run)[i];
-            add(edge_to_body(*cell.source, item), item.shape.primitive());
-            if (item.ball) add(edge_to_ball(*cell.source, item), PrimitiveKind::sphere);
-        }
+            leaf(edge.shape.primitive(), errors * edge.stretch);
+        });
         scene_.nodes[task.id].cell = node.cell;
         scene_.nodes[task.id].errors_per_unit = errors;
     }

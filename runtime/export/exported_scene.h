@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "compiler/detail/graph/cut_graph.h"
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/graph/material.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/big_count.h"
@@ -56,14 +56,14 @@ struct SceneLook {
 };
 
 struct SceneNode {
-    std::string name;                    ///< of the model's object; not unique
-    std::optional<std::uint32_t> shape;  ///< a leaf, which has no parts
-    std::vector<ScenePart> parts;        ///< in the order of the model
-    MeanColour whole{Rgb(0.0), 1};       ///< its look from afar
-    MeanColour mean{Rgb(0.0), 1};        ///< its colour from the one that it inherits
-    std::shared_ptr<const RunCell> cell; ///< in place of parts: a range of a run
-    double errors_per_unit = 1;          ///< of a cell: decides how fine its shapes are
-    SceneLook look;                      ///< of a leaf, once looks are resolved (looks.h)
+    std::string name;                     ///< of the model's object; not unique
+    std::optional<std::uint32_t> shape;   ///< a leaf, which has no parts
+    std::vector<ScenePart> parts;         ///< in the order of the model
+    MeanColour whole{Rgb(0.0), 1};        ///< its look from afar
+    MeanColour mean{Rgb(0.0), 1};         ///< its colour from the one that it inherits
+    std::shared_ptr<const EdgeCell> cell; ///< in place of parts
+    double errors_per_unit = 1;           ///< of a cell: decides how fine its shapes are
+    SceneLook look;                       ///< of a leaf, once looks are resolved (looks.h)
 };
 
 struct ExportedScene {
@@ -130,19 +130,14 @@ void for_each_part(const ExportedScene& scene, const SceneNode& node, Visit&& vi
     for (const ScenePart& part : node.parts)
         visit(part);
     if (!node.cell) return;
-    const RunCell& cell = *node.cell;
-    const auto visit_edge = [&](const CutEdge& edge, const Primitive& primitive) {
+    node.cell->for_each([&](const CellEdge& edge) {
         ScenePart part;
-        part.node = scene.leaves.at(scene.shape_for(primitive, node.errors_per_unit * edge.stretch));
+        part.node =
+            scene.leaves.at(scene.shape_for(edge.shape.primitive(), node.errors_per_unit * edge.stretch));
         part.node_from_part = edge.node_from_child;
         part.material = edge.material;
         visit(part);
-    };
-    for (std::size_t i = cell.first; i < cell.first + cell.count; ++i) {
-        const RunItem& item = (*cell.source->run)[i];
-        visit_edge(edge_to_body(*cell.source, item), item.shape.primitive());
-        if (item.ball) visit_edge(edge_to_ball(*cell.source, item), PrimitiveKind::sphere);
-    }
+    });
 }
 
 } // namespace graftal

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "compiler/graph/run.h"
-
 namespace graftal::v1 {
 
 namespace {
@@ -26,7 +24,8 @@ class Lister {
             const Object& object = graph_.objects[parent];
             for (const Instance& instance : object.instances)
                 add(parent, instance.master, instance.parent_from_child, instance.tint);
-            if (object.run) add_run(parent, *object.run);
+            for (const PackedEdge& edge : object.packed)
+                add(parent, round_object(edge.primitive), edge.parent_from_child, {});
         }
         return std::move(listed_);
     }
@@ -48,30 +47,23 @@ class Lister {
         listed_.instances.push_back(instance);
     }
 
-    void add_run(std::size_t parent, const Run& run) {
-        for (std::size_t i = 0; i < run.size(); ++i) {
-            add(parent, round_object(run[i].shape.primitive()), run_from_body(run[i]), {});
-            if (run[i].ball) add(parent, round_object(PrimitiveKind::sphere), run_from_ball(run[i]), {});
-        }
-    }
-
-    /// The object for a primitive, which a run names by its kind.
+    /// The object for a primitive, which packed edges name by its kind.
     std::size_t round_object(const Primitive& primitive) {
         const std::string& name = name_of(primitive);
-        const auto known = objects_of_runs_.find(name);
-        if (known != objects_of_runs_.end()) return known->second;
-        return objects_of_runs_[name] = add_object(name, name);
+        const auto known = round_objects_.find(name);
+        if (known != round_objects_.end()) return known->second;
+        return round_objects_[name] = add_object(name, name);
     }
 
     const graftal::Graph& graph_;
     ObjectGraph listed_;
-    std::map<std::string, std::size_t> objects_of_runs_;
+    std::map<std::string, std::size_t> round_objects_;
 };
 
 } // namespace
 
 std::optional<ObjectGraph> listed_graph(const graftal::Graph& graph, Status& status) {
-    const std::size_t count = instance_count(graph) + run_part_count(graph);
+    const std::size_t count = edge_count(graph);
     if (count <= most_instances) return Lister(graph).list();
     status = Status::failure(
         fmt::format("the graph has {} instances: it can be listed with at most {}", count, most_instances));

@@ -316,7 +316,7 @@ Result<Stats> Model::stats() {
         const std::optional<unsigned> levels = levels_of(*model, stages.lower.steps);
         Stats stats;
         stats.objects = model->graph.objects.size();
-        stats.instances = instance_count(model->graph) + run_part_count(model->graph);
+        stats.instances = edge_count(model->graph);
         stats.steps = model->derivation ? model->derivation->steps : levels;
         stats.primitives = count_leaves(model->graph, model->components, levels).value_or("");
         if (!model->bounds.empty()) {

@@ -68,14 +68,14 @@ Status finish_picture(const PovrayJob& job, const RenderOptions& options, const 
 /// Number of finite objects that POV-Ray must count: every placement except those of planes.
 std::uint64_t finite_objects(const Cut& cut) {
     std::uint64_t count = 0;
-    for (const PlacementGroup& group : cut.groups)
+    for (const PlacementGroup& group : cut.groups) {
         for (const Placement& placement : group.placements) {
             const auto* primitive = std::get_if<Primitive>(&cut.bodies[placement.body].shape);
             count += !primitive || *primitive != PrimitiveKind::plane;
         }
-    for (const PlacementGroup& group : cut.groups)
-        for (const RunPlacements& parts : group.runs)
-            count += part_count(parts);
+        for (const PackedPlacements& parts : group.packed)
+            count += parts.size();
+    }
     return count;
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/support/check.h"
@@ -21,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return 0;
     }
     const Options& options = *parsed.options;
-    if (options.command == Command::farm) {
+    if (std::string_view(options.command->name) == "farm") {
         GRAFTAL_CHECK(!options.farm.folder.empty(), "command line fuzzer: a job");
         return 0;
     }

@@ -60,17 +60,10 @@ void hold(Options& options, const fuzz::Scratch& scratch) {
 /// What a command writes to, in the folder; "" where it says something.
 std::string output_of(const Options& options) {
     const std::string ending = std::filesystem::path(options.render.output).extension().string();
-    switch (options.command) {
-    case Command::render:
-    case Command::points:
-        return "out" + (ending.empty() ? ".png" : ending);
-    case Command::compile:
-        return ending == ".inc" ? "out.inc" : "out.pov";
-    case Command::export_model:
-        return "out" + ending;
-    default:
-        return {};
-    }
+    const std::string_view command = options.command->name;
+    if (command == "render" || command == "points") return "out" + (ending.empty() ? ".png" : ending);
+    if (command == "compile") return ending == ".inc" ? "out.inc" : "out.pov";
+    return command == "export" ? "out" + ending : "";
 }
 
 } // namespace
@@ -90,15 +83,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     ParsedCommandLine parsed = parse_command_line(static_cast<int>(arguments.size()), arguments.data());
     if (!parsed.options) return 0;
     Options& options = *parsed.options;
-    if (options.command == Command::animate || options.command == Command::compare ||
-        options.operands.size() != 1)
+    const std::string_view command = options.command->name;
+    if (command == "animate" || command == "compare" || options.operands.size() != 1)
         return 0; // they start processes, or read what we have not made
     hold(options, scratch);
     const std::string output = output_of(options);
     options.operands = {scratch.path(model)};
     options.render.output = output.empty() ? "-" : scratch.path(output);
     scratch.write(model, text);
-    const int status = run_command(options);
+    const int status = options.command->run(options);
     GRAFTAL_CHECK(status == exit_done || status == exit_fault,
                   "model fuzzer: done, or the model is at fault");
     std::filesystem::remove(scratch.path(model));

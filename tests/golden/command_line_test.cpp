@@ -69,7 +69,6 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"render a.inst --set x=inf", "--set: 'x=inf' is not"},
         {"render a.inst --seed x", "--seed: 'x' is not"},
         {"render a.inst --bits 12", "--bits: '12' is not 8 or 16"},
-        {"render a.inst --bits 16 --linear", "--linear and --bits exclude each other"},
         {"render a.inst --threads 0", "--threads: '0' is not"},
         {"render a.inst --antialias 12", "--antialias: '12' is neither"},
         {"render a.inst --engine luxury", "--engine: 'luxury' is not one of: auto, native, povray"},

@@ -163,6 +163,18 @@ TEST_F(DocumentsTest, AllShellsOfferOptionsAndTheirWords) {
     }
 }
 
+TEST_F(DocumentsTest, NothingNamesOptionsOfTests) {
+    for (const std::string& command : commands())
+        EXPECT_THAT(graftal("help " + command).out + graftal("manual " + command).out,
+                    Not(HasSubstr("-test-")))
+            << command;
+    for (const std::string action : {"submit", "plan"})
+        EXPECT_THAT(graftal("help farm " + action).out, Not(HasSubstr("-test-")));
+    for (const char* const name : shells)
+        EXPECT_THAT(graftal(std::string("completion ") + name).out, Not(HasSubstr("-test-"))) << name;
+    EXPECT_THAT(graftal("render a.inst --test-linea").err, Not(HasSubstr("--test-linear")));
+}
+
 TEST_F(DocumentsTest, AllShellsOfferModelsAndFolders) {
     for (const char* const file : {"a fern.rifs", "tree.inst", "picture.png", "notes.txt"})
         write(file, "");

@@ -89,7 +89,7 @@ TEST_F(Materials, BlurIsDrawnByTheNativeEngineAlone) {
     EXPECT_EQ(graftal("render satin.inst --engine native --threads 1 -o a.png" + small).status, 0);
     EXPECT_EQ(graftal("render satin.inst --engine native --threads 3 -o b.png" + small).status, 0);
     EXPECT_EQ(graftal("render sharp.inst --engine native -o c.png" + small).status, 0);
-    EXPECT_EQ(graftal("render satin.inst --engine native --listed-lights -o d.png" + small).status, 0);
+    EXPECT_EQ(graftal("render satin.inst --engine native --test-listed-lights -o d.png" + small).status, 0);
     EXPECT_EQ(read("a.png"), read("b.png"));
     EXPECT_GT(compare_images(picture("a.png"), picture("c.png")).max, 0.1);
     EXPECT_EQ(compare_images(picture("c.png"), picture("d.png")).max, 0);

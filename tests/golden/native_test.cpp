@@ -71,7 +71,7 @@ TEST_F(Native, SaysHowManySamplesThereAre) {
 }
 
 TEST_F(Native, LinearPngAndExrHoldTheSameValues) {
-    ASSERT_EQ(render(gasket + small + "--linear -o a.png").status, 0);
+    ASSERT_EQ(render(gasket + small + "--test-linear -o a.png").status, 0);
     ASSERT_EQ(render(gasket + small + "-o a.exr").status, 0);
     expect_size("a.exr", 96, 54);
     EXPECT_LE(compare_images(picture("a.png"), picture("a.exr")).max, 1.0 / 65535 + 1e-3)

@@ -64,7 +64,8 @@ TEST_F(Render, PictureSaysWhichCommandMadeIt) {
 
 TEST_F(Render, LinearPngAndExrHoldTheSameValues) {
     ASSERT_EQ(
-        graftal("render --engine povray " + gasket + small + "--antialias off --linear -o a.png").status, 0);
+        graftal("render --engine povray " + gasket + small + "--antialias off --test-linear -o a.png").status,
+        0);
     ASSERT_EQ(graftal("render --engine povray " + gasket + small + "--antialias off -o a.exr").status, 0);
     // An EXR of POV-Ray has half floats, of 11 bits.
     EXPECT_LE(compare_images(picture("a.png"), picture("a.exr")).max, 1.0 / 2048);
@@ -96,7 +97,7 @@ TEST_F(Render, LightThatIsMoreThanAPointStaysInPovraysList) {
           "light { sun: -1, 2, 1  angle: 5 }\n", "sky { zenith: 0.5, 0.6, 0.8  horizon: 0.8, 0.8, 0.8 }\n"}) {
         SCOPED_TRACE(light);
         write("m.inst", light + scene);
-        EXPECT_LT(engines_differ("m.inst --size 96x54 --listed-lights", 0.1).mean, 1.0 / 255);
+        EXPECT_LT(engines_differ("m.inst --size 96x54 --test-listed-lights", 0.1).mean, 1.0 / 255);
         ASSERT_EQ(graftal("render --engine povray m.inst --size 96x54 --work 0.01 -q -o few.png").status, 0);
         EXPECT_LT(compare_images(picture("few.png"), picture("native.png")).mean, 12.0 / 255);
     }

@@ -87,13 +87,13 @@ class WithEnvironment : public CommandLine {
     /// On a.inst; `listed_255`: how far apart pictures by one list of lights may be.
     void expect_engines_agree(double listed_255) {
         for (const std::string engine :
-             {"povray", "native --listed-lights", "native --samples 256 --noise 0"}) {
+             {"povray", "native --test-listed-lights", "native --samples 256 --noise 0"}) {
             const RunResult result =
                 graftal("render a.inst --size 120x90 -q -o '" + engine + ".png' --engine " + engine);
             ASSERT_EQ(result.status, 0) << result.err;
         }
         const Image povray = picture("povray.png");
-        EXPECT_LT(compare_images(povray, picture("native --listed-lights.png")).mean, listed_255 / 255);
+        EXPECT_LT(compare_images(povray, picture("native --test-listed-lights.png")).mean, listed_255 / 255);
         EXPECT_LT(compare_images(povray, picture("native --samples 256 --noise 0.png")).mean, 2.0 / 255);
     }
 };

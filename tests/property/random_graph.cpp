@@ -173,8 +173,8 @@ class Generator {
     void fill_with_run(Object& object) {
         static constexpr std::array<double, 4> tapers = {0, 0.25, 0.5, 1};
         auto run = std::make_shared<Run>();
-        object.run_materials.resize(1 + choices_.below(2));
-        for (std::optional<MaterialId>& material : object.run_materials)
+        object.packed.materials.resize(1 + choices_.below(2));
+        for (std::optional<MaterialId>& material : object.packed.materials)
             if (!graph_.materials.empty() && !choices_.one_in(3))
                 material = choices_.below(static_cast<std::uint32_t>(graph_.materials.size()));
         for (std::uint32_t left = 1 + choices_.below(choices_.one_in(4) ? 70 : 4); left > 0; --left) {
@@ -187,10 +187,10 @@ class Generator {
             if (item.shape.is_sphere()) item.axis *= item.radius / glm::length(item.axis);
             item.ball = item.shape == PrimitiveKind::cylinder && choices_.one_in(2);
             item.colour = static_cast<std::uint16_t>(
-                choices_.below(static_cast<std::uint32_t>(object.run_materials.size())));
+                choices_.below(static_cast<std::uint32_t>(object.packed.materials.size())));
             run->add(item);
         }
-        object.run = std::move(run);
+        object.packed.run = std::move(run);
     }
 
     void fill(std::uint32_t i) {
@@ -227,7 +227,7 @@ class Generator {
         for (ObjectId id = 0; id < graph_.objects.size(); ++id)
             if (!components.unending[id]) ending.push_back(id);
         for (const ObjectId id : unions_) {
-            if (graph_.objects[id].run || ending.empty() || !choices_.one_in(4)) continue;
+            if (graph_.objects[id].packed || ending.empty() || !choices_.one_in(4)) continue;
             const ObjectId master = ending[choices_.below(static_cast<std::uint32_t>(ending.size()))];
             graph_.objects[id].terminal = instance_of(master);
             if (terminals_that_return(graph_, components)[id]) {

@@ -12,7 +12,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/piece.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/passes/drop_unreachable.h"

@@ -4,16 +4,28 @@
 
 namespace graftal {
 
-// One function a command. Each returns the exit status: 0 done, 1 the model or the result is at fault,
-// 3 the environment, 128 + n after signal n.
+// One row a command, and the functions that run them. Each returns the exit status: 0 done, 1 the model or
+// the result is at fault, 3 the environment, 128 + n after signal n.
 
 inline constexpr int exit_done = 0;
 inline constexpr int exit_fault = 1;
 inline constexpr int exit_usage = 2;
 inline constexpr int exit_environment = 3;
 
-/// The command that the options name.
-int run_command(const Options& options);
+/// What an output that is a folder means: the command writes none, writes into it, or writes the folder
+/// itself.
+enum class FolderAsOutput { refused, holds_files, is_written };
+
+/// One row of the table in options.cpp: all that there is to a command.
+struct Command {
+    const char* name;
+    const char* summary;
+    void (*add)(CLI::App&, Options&);  ///< adds its options
+    std::string (*complete)(Options&); ///< says what is wrong with options that are each right, or ""
+    int (*run)(const Options&);        ///< returns the exit status
+    const char* ending = ".png";       ///< of a usual output
+    FolderAsOutput folder = FolderAsOutput::refused;
+};
 
 int run_render(const Options& options);
 int run_watch(const Options& options); ///< `render --watch`

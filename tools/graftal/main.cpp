@@ -39,7 +39,7 @@ int run_command_line(int argc, char** argv) {
         if (!parsed.options) return parsed.exit_status;
         graftal::limit_memory(
             std::max(parsed.options->render.compile.detail.memory_bytes, least_memory_bytes));
-        return graftal::run_command(*parsed.options);
+        return parsed.options->command->run(*parsed.options);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const graftal::BrokenInvariant& fault) {

@@ -42,9 +42,9 @@ void add_render(CLI::App& app, Options& options) {
     add_common(app, options);
     add_drawing(app, options);
     app.add_flag_callback(
-        "--linear", [&] { options.render.format = SampleFormat::linear16; },
+        "--test-linear", [&] { options.render.format = SampleFormat::linear16; },
         "Write a 16-bit PNG of linear values, for measurements (default: 8-bit sRGB)");
-    add_bits(app, options)->excludes("--linear");
+    add_bits(app, options);
     app.add_flag_callback(
         "--progressive", [&options] { options.progressive = true; },
         "Write coarse pictures first, then finer ones under the same name; Ctrl-C keeps the last one "
@@ -267,32 +267,6 @@ void add_collage(CLI::App& app, Options& options) {
     add_common(app, options);
 }
 
-struct CommandEntry {
-    Command command;
-    const char* name;
-    const char* summary;
-    void (*add)(CLI::App&, Options&);
-};
-
-constexpr CommandEntry commands[] = {
-    {Command::render, "render", "Draw a picture of a model, with graftal's own ray tracer or POV-Ray",
-     add_render},
-    {Command::animate, "animate", "Make an animation of a model that turns, grows or changes", add_animate},
-    {Command::points, "points", "Draw a model by random points, as a picture or a point cloud", add_points},
-    {Command::collage, "collage", "Measure how well a model's maps cover a target picture", add_collage},
-    {Command::compile, "compile", "Write a model as a POV-Ray scene", add_compile},
-    {Command::export_model, "export",
-     "Write a model for other programs: Blender, web pages, printers, renderers", add_export},
-    {Command::check, "check", "Check models, and report what is wrong with them", add_check},
-    {Command::stats, "stats", "Print the sizes, contraction, dimension and bounds of a model", add_stats},
-    {Command::print, "print", "Print the graph of a model as .inst text", add_print},
-    {Command::graph, "graph", "Draw the graph of a model", add_graph},
-    {Command::import_foreign, "import", "Translate models of other programs into models of graftal",
-     add_import},
-    {Command::compare, "compare", "Measure how much two pictures differ", add_compare},
-    {Command::farm, "farm", "Draw gigapixels, films and sweeps in tasks, on many machines", add_farm},
-};
-
 int usage_error(const std::string& message, const std::string& command) {
     complain(message);
     say(fmt::format("Try 'graftal{}{} --help' for more information.\n", command.empty() ? "" : " ", command));
@@ -324,10 +298,10 @@ std::string refusal_to_watch(const Options& options) {
 }
 
 /// The problem with the size of a picture, or of the part of it that is wanted; or "".
-std::string refusal_of_size(const Options& options, bool in_parts) {
+std::string refusal_of_size(const Options& options) {
     const ImageSize size = options.render.compile.view.size;
     if (!options.render.tile) {
-        if (in_parts || is_drawn_at_once(size)) return {};
+        if (options.in_parts || is_drawn_at_once(size)) return {};
         return fmt::format("--size: a picture of {}x{} is too large to be drawn at once (at most 32768 a "
                            "side, and 2^28 pixels): draw it in tiles with 'graftal farm plan', or a part of "
                            "it with --tile",
@@ -342,50 +316,85 @@ std::string refusal_of_size(const Options& options, bool in_parts) {
     return {};
 }
 
-/// The problem with options that are each right, or "".
-std::string complete_command(Options& options, bool in_parts) {
-    if (options.command == Command::farm) {
-        options.engine = &native_engine;
-        return complete_farm(options);
-    }
-    if (const std::string refused = options.watch ? refusal_to_watch(options) : ""; !refused.empty())
-        return refused;
-    if (!options.engine) options.engine = &engines().front();
-    options.render.progressive = options.progressive.value_or(false);
-    const bool draws = options.command == Command::render || options.command == Command::animate;
-    const std::string refused = draws ? options.engine->refusal(options.render) : "";
-    if (!refused.empty()) return refused;
-    const std::string extension = std::filesystem::path(options.render.output).extension().string();
-    const bool from_stdin = options.operands.front() == "-";
-    if (options.command == Command::render) {
-        if (const std::string refused_size = refusal_of_size(options, in_parts); !refused_size.empty())
-            return refused_size;
-        if (options.render.output.empty() && from_stdin)
-            return "a model from standard input has no name: name the picture with '-o FILE'";
-        if (options.render.output.empty())
-            options.render.output = model_stem(options.operands.front()) + ".png";
-        if (!is_picture_name(options.render.output))
-            return fmt::format("'{}': the name of a picture must end in .png or .exr", options.render.output);
-    }
-    if (options.command == Command::import_foreign) return {};
-    if (options.command == Command::animate) return complete_animation(options);
-    if (options.command == Command::points) return complete_points(options);
-    if (options.command == Command::export_model) return complete_export(options);
-    if (options.render.output.empty()) options.render.output = "-";
-    const bool to_stdout = options.render.output == "-";
-    if (options.command == Command::compile && !to_stdout && extension != ".pov" && extension != ".inc")
-        return fmt::format("'{}': the name of a scene must end in .pov or .inc", options.render.output);
-    if (!options.identifier.empty() && extension != ".inc")
-        return "--name names what an .inc declares: give '-o FILE.inc' too";
-    if (options.command == Command::graph && !to_stdout && extension != ".dot" && extension != ".svg")
-        return fmt::format("'{}': the name of a graph's drawing must end in .dot or .svg",
-                           options.render.output);
+std::string complete_nothing(Options&) {
     return {};
 }
 
-std::string complete(Options& options, bool in_parts) {
-    std::string problem = refusal_of_folder(options); // before all that is said of a file's name
-    if (problem.empty()) problem = complete_command(options, in_parts);
+/// The engine's refusal of a picture, or "".
+std::string refusal_of_engine(const Options& options) {
+    return options.engine->refusal(options.render);
+}
+
+std::string complete_render(Options& options) {
+    std::string& output = options.render.output;
+    for (const auto refusal : {refusal_of_engine, refusal_of_size})
+        if (std::string refused = refusal(options); !refused.empty()) return refused;
+    if (output.empty() && options.operands.front() == "-")
+        return "a model from standard input has no name: name the picture with '-o FILE'";
+    if (output.empty()) output = model_stem(options.operands.front()) + ".png";
+    if (!is_picture_name(output))
+        return fmt::format("'{}': the name of a picture must end in .png or .exr", output);
+    return {};
+}
+
+std::string complete_animate(Options& options) {
+    const std::string refused = refusal_of_engine(options);
+    return refused.empty() ? complete_animation(options) : refused;
+}
+
+/// Without a file's name the output is standard output; else the name must have one of two endings.
+std::string complete_text(Options& options, const char* what, const char* one, const char* other) {
+    std::string& output = options.render.output;
+    if (output.empty()) output = "-";
+    const std::string extension = std::filesystem::path(output).extension().string();
+    if (output == "-" || extension == one || extension == other) return {};
+    return fmt::format("'{}': the name of {} must end in {} or {}", output, what, one, other);
+}
+
+std::string complete_compile(Options& options) {
+    const std::string wrong = complete_text(options, "a scene", ".pov", ".inc");
+    if (wrong.empty() && !options.identifier.empty() && !options.render.output.ends_with(".inc"))
+        return "--name names what an .inc declares: give '-o FILE.inc' too";
+    return wrong;
+}
+
+std::string complete_graph(Options& options) {
+    return complete_text(options, "a graph's drawing", ".dot", ".svg");
+}
+
+constexpr Command commands[] = {
+    {"render", "Draw a picture of a model, with graftal's own ray tracer or POV-Ray", add_render,
+     complete_render, run_render},
+    {"animate", "Make an animation of a model that turns, grows or changes", add_animate, complete_animate,
+     run_animate, ".gif", FolderAsOutput::is_written},
+    {"points", "Draw a model by random points, as a picture or a point cloud", add_points, complete_points,
+     run_points},
+    {"collage", "Measure how well a model's maps cover a target picture", add_collage, complete_nothing,
+     run_collage},
+    {"compile", "Write a model as a POV-Ray scene", add_compile, complete_compile, run_compile, ".pov"},
+    {"export", "Write a model for other programs: Blender, web pages, printers, renderers", add_export,
+     complete_export, run_export, ".glb"},
+    {"check", "Check models, and report what is wrong with them", add_check, complete_nothing, run_check},
+    {"stats", "Print the sizes, contraction, dimension and bounds of a model", add_stats, complete_nothing,
+     run_stats},
+    {"print", "Print the graph of a model as .inst text", add_print, complete_nothing, run_print},
+    {"graph", "Draw the graph of a model", add_graph, complete_graph, run_graph, ".svg"},
+    {"import", "Translate models of other programs into models of graftal", add_import, complete_nothing,
+     run_import, ".lsys", FolderAsOutput::holds_files},
+    {"compare", "Measure how much two pictures differ", add_compare, complete_nothing, run_compare},
+    {"farm", "Draw gigapixels, films and sweeps in tasks, on many machines", add_farm, complete_farm,
+     run_farm, "", FolderAsOutput::is_written},
+};
+
+/// The problem with options that are each right, or "".
+std::string complete(Options& options) {
+    if (std::string refused = refusal_of_folder(options); !refused.empty())
+        return refused; // before all that is said of a file's name
+    if (std::string refused = options.watch ? refusal_to_watch(options) : ""; !refused.empty())
+        return refused;
+    if (!options.engine) options.engine = &engines().front();
+    options.render.progressive = options.progressive.value_or(false);
+    std::string problem = options.command->complete(options);
     if (problem.empty()) problem = refusal_of_folder(options); // a name that the model gave
     return problem.empty() ? refusal_of_names(options) : problem;
 }
@@ -398,6 +407,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
 
 ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_parts) {
     Options options;
+    options.in_parts = in_parts;
     options.farm.words = take_foreign_words(words);
     std::vector<const char*> argv;
     for (const std::string& word : words)
@@ -416,17 +426,17 @@ ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_par
         "'graftal COMMAND --help' explains a command and shows examples. If you are new to graftal, start\n"
         "with docs/tutorial.md.\n"
         "Exit status: 0 success, 1 faulty model or result, 2 wrong command line, 3 faulty environment.");
-    for (const CommandEntry& entry : commands) {
-        CLI::App* command = app.add_subcommand(entry.name, entry.summary);
-        entry.add(*command, options);
+    for (const Command& row : commands) {
+        CLI::App* command = app.add_subcommand(row.name, row.summary);
+        row.add(*command, options);
         group_options(*command);
-        command->callback([&options, &entry] { options.command = entry.command; });
+        command->callback([&options, &row] { options.command = &row; });
     }
     const Documents documents(app);
 
     std::vector<std::string> names;
-    for (const CommandEntry& entry : commands)
-        names.emplace_back(entry.name);
+    for (const Command& row : commands)
+        names.emplace_back(row.name);
     std::ranges::copy(Documents::commands(), std::back_inserter(names));
     const std::string wrong = wrong_command(argc, argv.data(), names);
     if (!wrong.empty()) return {std::nullopt, usage_error(wrong, "")};
@@ -461,7 +471,7 @@ ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_par
     if (chosen().empty()) return {std::nullopt, usage_error("which command?", "")};
     if (chosen() == "farm")
         return {std::nullopt, usage_error("farm: name a step: plan, submit, status, merge or clean", "farm")};
-    const std::string problem = complete(options, in_parts);
+    const std::string problem = complete(options);
     if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
 
     options.animation.identity = frame_identity(*app.get_subcommands().front(), *options.engine);

@@ -15,21 +15,7 @@
 
 namespace graftal {
 
-enum class Command {
-    render,
-    animate,
-    points,
-    collage,
-    compile,
-    export_model,
-    check,
-    stats,
-    print,
-    graph,
-    import_foreign,
-    compare,
-    farm
-};
+struct Command;
 
 /// Options of `animate` besides those of `render`.
 struct AnimationOptions {
@@ -59,7 +45,7 @@ inline constexpr double inspecting_seconds = 10;
 
 /// The command line, understood.
 struct Options {
-    Command command = Command::render;
+    const Command* command = nullptr;  ///< never null after parse_command_line()
     std::vector<std::string> operands; ///< the model or models; for compare the two pictures
     RenderOptions render;   ///< `compile` and `output` are of every command: "-" is standard output
     std::string dump_after; ///< a pass, "all", or ""
@@ -77,6 +63,7 @@ struct Options {
     ExportOptions file;       ///< of `export`; its output and metadata are those of `render`
     bool json = false;
     double threshold = 0;
+    bool in_parts = false; ///< the picture of `render` may be larger than one that is drawn at once
 };
 
 struct ParsedCommandLine {
@@ -86,8 +73,7 @@ struct ParsedCommandLine {
 
 /// Reads the command line; help goes to standard output, complaints in the GNU form to standard error.
 ParsedCommandLine parse_command_line(int argc, const char* const* argv);
-/// Reads words in place of argv. `in_parts`: the picture of `render` may be larger than one that is drawn at
-/// once.
+/// Reads words in place of argv. `in_parts` is that of Options.
 ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_parts = false);
 
 } // namespace graftal

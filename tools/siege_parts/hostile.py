@@ -5,7 +5,7 @@ NUMBERS = ['0', '1', '-1', '2', '0.5', '1e-3', '1e-100', '1e100', '1e101', '1e30
            '4294967296', '18446744073709551615', '-0', '1/3', '2^330', '1e-17', '3,4', '1..2', '0x10', '1e6', '٣']
 SMALL = ['64x36', '1x1', '160x90', '3x200', '200x3']
 OPTIONS = {
-    'render': ['--size', '--error', '--error-world', '--work', '--zoom', '--at', '--camera', '--antialias', '--linear',
+    'render': ['--size', '--error', '--error-world', '--work', '--zoom', '--at', '--camera', '--antialias', '--test-linear',
                '--progressive', '--no-progressive', '--flatten', '--visible-only', '--keep', '--aovs', '--tile'],
     'compile': ['--size', '--error', '--error-world', '--work', '--zoom', '--at', '--camera', '--flatten', '--visible-only', '--name'],
     'points': ['--size', '--points', '--color', '--exposure', '--camera', '--zoom', '--at', '--transparent', '--card'],
@@ -16,7 +16,7 @@ OPTIONS = {
     'compare': ['--threshold', '-q'],
 }
 COMMON = ['--steps', '--set', '--seed', '--exact', '--memory', '--threads', '--dump-after', '--time', '-q', '--root']
-FLAGS = {'--linear', '--progressive', '--no-progressive', '--aovs', '--flatten', '--visible-only', '--transparent', '--json', '--light', '--exact', '--time', '-q',
+FLAGS = {'--test-linear', '--progressive', '--no-progressive', '--aovs', '--flatten', '--visible-only', '--transparent', '--json', '--light', '--exact', '--time', '-q',
          '--keep-frames', '--instancing', '--plotter'}
 VALUES = {
     '--size': [*SMALL, *SMALL, '32768x1', '0x0', '64', '99999x99999'],

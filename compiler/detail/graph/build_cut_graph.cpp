@@ -1,7 +1,6 @@
 #include "compiler/detail/graph/build_cut_graph.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -10,7 +9,7 @@
 
 #include <glm/common.hpp>
 
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/path.h"
 #include "compiler/support/stretch.h"
@@ -61,7 +60,9 @@ class Builder {
                 !part && (node.unending || leaves[id] > uncullable_leaves || node.terminal_px > 0);
             node.ball = bounds.ball.empty() ? Ball{Vec3(0.0), 0.0} : bounds.ball;
             node.node_from_proxy = ellipsoid_in(bounds.box);
-            if (object.run) add_run(object, *bounds.run, node);
+            if (object.packed)
+                add_cells(cut_, node, object.packed, *bounds.run,
+                          [&](const Primitive& primitive) { return primitive_node(primitive); });
             const std::vector<Instance> instances = std::exchange(object.instances, {});
             node.edges.reserve(instances.size());
             for (const Instance& instance : instances)
@@ -93,21 +94,6 @@ class Builder {
     /// Whether it leads to an ending object, maybe by a detour.
     bool ends(const CutEdge& edge) const {
         return edge.levels == 0 && (edge.child >= graph_.objects.size() || !components_.unending[edge.child]);
-    }
-
-    void add_run(const Object& object, const RunBounds& bounds, CutNode& node) {
-        auto source = std::make_shared<RunSource>();
-        source->run = object.run;
-        source->materials = object.run_materials;
-        std::array<bool, RunShape::count> met{};
-        for (std::size_t i = 0; i < object.run->size(); ++i) {
-            const RunItem& item = (*object.run)[i];
-            for (const RunShape shape : {item.shape, item.ball ? PrimitiveKind::sphere : item.shape}) {
-                if (std::exchange(met[shape.index()], true)) continue;
-                source->child[shape.index()] = primitive_node(shape.primitive());
-            }
-        }
-        add_run_nodes(cut_, node, source, bounds);
     }
 
     NodeId primitive_node(const Primitive& primitive) {
@@ -179,9 +165,7 @@ class Builder {
         for (const auto& members : components_.members)
             for (const ObjectId id : members) {
                 const Object& object = graph_.objects[id];
-                leaves[id] = object.primitive ? 1
-                             : object.run     ? static_cast<double>(object.run->part_count())
-                                              : 0;
+                leaves[id] = object.primitive ? 1 : static_cast<double>(object.packed.size());
                 for (const Instance& instance : graph_.objects[id].instances)
                     leaves[id] += leaves[instance.master];
             }

@@ -35,7 +35,7 @@ struct MeanColour {
     Rgb over(Rgb inherited) const { return fixed + open * inherited; }
 };
 
-struct RunCell;
+struct EdgeCell;
 
 /// An object as the cut sees it.
 struct CutNode {
@@ -43,9 +43,9 @@ struct CutNode {
     std::optional<Primitive> primitive;
     std::vector<CutEdge> edges;
     std::vector<CutEdge> stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
-    std::shared_ptr<const RunCell> cell; ///< in place of edges: see for_each_edge() (run_cells.h)
-    bool terminal = false;               ///< stop_edges holds the terminal, not the ending instances
-    double terminal_px = 0;              ///< the object's (graph.h)
+    std::shared_ptr<const EdgeCell> cell; ///< in place of edges: see for_each_edge() (edge_cell.h)
+    bool terminal = false;                ///< stop_edges holds the terminal, not the ending instances
+    double terminal_px = 0;               ///< the object's (graph.h)
     bool unending = false;
     bool solid = false;      ///< some way leads to a primitive
     bool unbounded = false;  ///< is a plane or holds one: always expanded into placements

@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/graph/settle.h"
 
 namespace graftal {
@@ -61,19 +61,12 @@ Lit lit_of(const CutGraph& cut, const CutNode& node, const std::vector<Lit>& bel
     return sum;
 }
 
-Lit lit_of_cell(const CutGraph& cut, const RunCell& cell) {
+Lit lit_of_cell(const CutGraph& cut, const EdgeCell& cell) {
     Lit sum = nothing;
     double shadow = 0;
-    const auto each = [&](const auto& measure) {
-        for (std::size_t i = cell.first; i < cell.first + cell.count; ++i) {
-            const RunItem& item = (*cell.source->run)[i];
-            measure(item, mean_shadow(item));
-        }
-    };
-    each([&](const RunItem&, double area) { shadow += area; });
+    cell.for_each_shadow([&](const std::optional<MaterialId>&, double area) { shadow += area; });
     if (!(shadow > 0)) return {};
-    each([&](const RunItem& item, double area) {
-        const std::optional<MaterialId>& material = cell.source->materials[item.colour];
+    cell.for_each_shadow([&](const std::optional<MaterialId>& material, double area) {
         sum.add(area / shadow, material ? made_of(Lit(), cut.materials[*material]) : Lit());
     });
     return sum;

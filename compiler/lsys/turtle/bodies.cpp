@@ -27,13 +27,19 @@ Affine on_corners(Vec3 a, Vec3 b, Vec3 c) {
 
 } // namespace
 
-void widen(Run& run, double factor) {
-    for (std::size_t i = 0; i < run.size(); ++i) {
-        RunItem& item = run[i];
+void TurtleBodies::widen_packed(double factor) {
+    for (std::size_t i = 0; i < packed_count(); ++i) {
+        RunItem& item = (*run_)[i];
         if (!(item.colour & open_width)) continue;
         item.colour &= static_cast<std::uint16_t>(~open_width);
         item.radius *= factor;
     }
+}
+
+PackedEdges TurtleBodies::take_packed() {
+    if (packed_count() == 0) return {};
+    run_->shrink_to_fit();
+    return {std::move(run_), ids_};
 }
 
 int TurtleBodies::colour_index(double number) const {
@@ -66,14 +72,14 @@ void TurtleBodies::add_item(RunShape shape, Vec3 base, Vec3 axis, double radius,
     if (!is_sound(item)) return; // too small for numbers
     if (!palette_[index].texture.empty()) item.turn = turn_of(axis, x);
     if (sink.open_width) item.colour |= open_width;
-    sink.run->add(item);
+    run_->add(item);
 }
 
 void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, double width, int colour,
                                Span span, BodySink sink) {
     if (length == 0 || width == 0) return;
     const double radius = width / 2;
-    if (sink.run) {
+    if (run_) {
         add_item(PrimitiveKind::cylinder, start_from_turtle.translation, length * start_from_turtle.linear[1],
                  radius, start_from_turtle.linear[0], true, colour, sink);
         return;
@@ -96,7 +102,7 @@ void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double 
     if (glm::length(x) < 1e-3)
         x = start_from_turtle.linear[2] - glm::dot(start_from_turtle.linear[2], y) / (length * length) * y;
     x = glm::normalize(x);
-    if (sink.run) {
+    if (run_) {
         add_item(tapered(std::min(width, from_width) / (2 * radius)), thick, y, radius, x, false, colour,
                  sink);
         add_sphere(start_from_turtle, width, colour, span, sink);
@@ -122,7 +128,7 @@ void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, 
                               BodySink sink) {
     diameter = at_least_size(diameter);
     if (diameter == 0) return;
-    if (sink.run) {
+    if (run_) {
         const double radius = std::abs(diameter) / 2;
         add_item(PrimitiveKind::sphere, start_from_turtle.translation, radius * start_from_turtle.linear[1],
                  radius, start_from_turtle.linear[0], false, colour, sink);
@@ -137,7 +143,7 @@ void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, in
     if (diameter == 0) return;
     const Affine upright = start_from_turtle * Affine::rotate({1, 0, 0}, 90);
     const double thickness = disc_thickness * diameter;
-    if (sink.run) {
+    if (run_) {
         const Vec3 axis = std::abs(thickness) * upright.linear[1];
         add_item(PrimitiveKind::cylinder, upright.translation - 0.5 * axis, axis, diameter / 2,
                  upright.linear[0], false, colour, sink);

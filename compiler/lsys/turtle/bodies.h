@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -16,7 +18,6 @@ namespace graftal {
 /// Where bodies go.
 struct BodySink {
     std::vector<Instance>& instances;
-    Run* run = nullptr; ///< of round bodies, if there is one
     /// The body is as thick as lines are, and that is not known yet: its item is marked (open_width).
     bool open_width = false;
 };
@@ -24,16 +25,15 @@ struct BodySink {
 /// The mark in RunItem::colour of bodies of open width, until widen() has been called.
 inline constexpr std::uint16_t open_width = 1u << 15;
 
-/// Makes what is marked by open_width thicker by a factor, and takes the marks away.
-void widen(Run& run, double factor);
-
 /// Makes the instances of what a turtle draws. A turtle's frame has x to its right, y ahead, and z up, so
 /// that the canonical cylinder is a segment.
 class TurtleBodies {
   public:
     /// Colour index k draws with `palette[k mod size]`. `graph` gets the primitives and materials that are
-    /// used, a material that it has by this name is taken; it must outlive this.
-    TurtleBodies(Graph& graph, std::vector<Material> palette) : graph_(graph), palette_(std::move(palette)) {
+    /// used, a material that it has by this name is taken; it must outlive this. `packs`: round bodies become
+    /// packed edges in place of instances.
+    TurtleBodies(Graph& graph, std::vector<Material> palette, bool packs = false)
+        : graph_(graph), palette_(std::move(palette)), run_(packs ? std::make_shared<Run>() : nullptr) {
         ids_.resize(palette_.size());
     }
 
@@ -56,8 +56,11 @@ class TurtleBodies {
     void add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink);
     void add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span, BodySink sink);
 
-    /// The materials of a run's colours.
-    std::vector<std::optional<MaterialId>> run_materials() const { return ids_; }
+    std::size_t packed_count() const { return run_ ? run_->size() : 0; } ///< items
+    /// Makes packed bodies that are marked by open_width thicker by a factor, and takes the marks away.
+    void widen_packed(double factor);
+    /// What has been packed, if anything has. Requires that nothing is added afterwards.
+    PackedEdges take_packed();
 
   private:
     MaterialId material(int colour);
@@ -71,6 +74,7 @@ class TurtleBodies {
     Graph& graph_;
     std::vector<Material> palette_;                      ///< not empty
     std::vector<std::optional<MaterialId>> ids_;         ///< of the palette's materials used so far
+    std::shared_ptr<Run> run_;                           ///< of round bodies, or null
     std::unordered_map<Primitive, ObjectId> primitives_; ///< primitives used so far
 };
 

@@ -57,8 +57,8 @@ const char* size_name(TurtleCommand command) {
 
 } // namespace
 
-Turtle::Turtle(TurtleContext& context, const TurtleState& start, Run* run)
-    : context_(context), run_(run), second_(glm::mat3_cast(start.second)), state_(start) {}
+Turtle::Turtle(TurtleContext& context, const TurtleState& start)
+    : context_(context), second_(glm::mat3_cast(start.second)), state_(start) {}
 
 bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
                  const std::optional<PlacedModel>& model, Span span, bool absolute) {
@@ -235,9 +235,9 @@ bool Turtle::within_limits(Span span) {
             span, fmt::format("the model draws more than {} parts in one place", context_.max_instances));
         return false;
     }
-    if (run_ && run_->size() > max_run_items) {
+    if (context_.bodies.packed_count() > max_packed_items) {
         context_.diagnostics
-            .error(span, fmt::format("the model draws more than {} single parts", max_run_items))
+            .error(span, fmt::format("the model draws more than {} single parts", max_packed_items))
             .with_hint("use fewer steps to draw fewer parts");
         return false;
     }

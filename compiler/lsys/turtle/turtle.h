@@ -80,8 +80,8 @@ struct Placing {
     double size_error = 0;  ///< of parameters that reach nothing but widths
 };
 
-/// Most items in one run; each takes 64 bytes.
-inline constexpr std::size_t max_run_items = 32'000'000;
+/// Most items that are packed; each takes 64 bytes.
+inline constexpr std::size_t max_packed_items = 32'000'000;
 
 /// The state that all turtles of a model share.
 struct TurtleContext {
@@ -120,9 +120,8 @@ inline double bounded(double sensitivity) {
 /// Follows commands and gathers what they draw.
 class Turtle {
   public:
-    /// `context` must outlive the turtle; `start` has a frame if symbols ask for the world. `run`: takes the
-    /// round bodies that run() draws, in place of the part's instances.
-    Turtle(TurtleContext& context, const TurtleState& start, Run* run = nullptr);
+    /// `context` must outlive the turtle; `start` has a frame if symbols ask for the world.
+    Turtle(TurtleContext& context, const TurtleState& start);
 
     /// Carries out one module; false after an error. `model` is what `~` places. `absolute`: the parameter
     /// is a size in units.
@@ -237,10 +236,9 @@ class Turtle {
     void note(TurtleStateMask bits) { part_.reads |= static_cast<TurtleStateMask>(bits & ~writes_); }
 
     /// `by_width`: of a body that is as thick as a line.
-    BodySink sink(bool by_width) { return {part_.instances, run_, by_width && context_.open_width}; }
+    BodySink sink(bool by_width) { return {part_.instances, by_width && context_.open_width}; }
 
     TurtleContext& context_;
-    Run* run_;
     Affine start_from_turtle_; ///< by a rotation, or a mirrored one
     double scale_ = 1;         ///< by which lengths are longer
     Mat3 second_;              ///< the second axes, in the frame of the start

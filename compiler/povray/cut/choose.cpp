@@ -11,7 +11,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/povray/costs.h"
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"

@@ -70,8 +70,8 @@ void Grouping::add(const Placed& thing) {
 
 void Grouping::add(const PlacedRuns::Range& range) {
     const Run& run = *range.source->run;
-    RunPlacements parts{range.source->run,           range.first, range.count,   0,
-                        range.piece.world_from_node, {},          range.left_out};
+    PackedPlacements parts{range.source->run,           range.first, range.count,   0,
+                           range.piece.world_from_node, {},          range.left_out};
     std::vector<bool> colours(range.source->materials.size());
     std::array<bool, RunShape::count> known{}; // of parts.body
     for (std::size_t i = range.first; i < range.first + range.count; ++i) {
@@ -88,8 +88,8 @@ void Grouping::add(const PlacedRuns::Range& range) {
         const Rgb base = own ? cut_.materials[*own].rgb : range.piece.inherited;
         parts.colour = static_cast<std::uint16_t>(colour_number);
         const Finish finish{own ? own : range.piece.material, range.piece.light_share};
-        group_of(colour(range.piece.tint.over(base)), {}, finish).runs.push_back(parts);
-        result_.placement_count += part_count(parts);
+        group_of(colour(range.piece.tint.over(base)), {}, finish).packed.push_back(parts);
+        result_.placement_count += parts.size();
     }
 }
 

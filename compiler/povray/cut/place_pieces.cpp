@@ -12,7 +12,7 @@
 
 #include "compiler/detail/bake.h"
 #include "compiler/detail/graph/alike_set.h"
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/least_width.h"
 #include "compiler/detail/placed_set.h"
 #include "compiler/detail/work.h"

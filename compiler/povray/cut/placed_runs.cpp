@@ -15,12 +15,6 @@ bool shows_alike(const Piece& a, const Piece& b) {
            a.material == b.material;
 }
 
-/// Calls `visit(index of the part, shape, whether it is the ball)` on the parts of an item.
-template<typename Visit> void visit_item(std::size_t i, const RunItem& item, const Visit& visit) {
-    visit(2 * i, item.shape, false);
-    if (item.ball) visit(2 * i + 1, RunShape(PrimitiveKind::sphere), true);
-}
-
 /// Tells where parts lie, to 1e-9 of the model's size, in one number.
 class Digests {
   public:
@@ -58,9 +52,8 @@ bool PlacedRuns::can_hold(const CutGraph& cut, const Piece& piece) {
     return sigma.z * node.cell->flattest > flattest_placement * sigma.x;
 }
 
-void PlacedRuns::add(const Piece& piece, const RunCell& cell) {
-    for (const RunCell::Alike& alike : cell.alike)
-        parts_ += alike.count;
+void PlacedRuns::add(const Piece& piece, const EdgeCell& cell) {
+    parts_ += cell.size();
     if (!ranges_.empty()) {
         Range& last = ranges_.back();
         if (last.source == cell.source && last.first + last.count == cell.first &&
@@ -77,8 +70,8 @@ double PlacedRuns::sift(const CutGraph& cut, const Projection& projection) {
     const auto for_each = [&](Range& range, const auto& visit) {
         for (std::size_t i = 0; i < range.count; ++i) {
             const RunItem& item = (*range.source->run)[range.first + i];
-            visit_item(i, item,
-                       [&](std::size_t part, RunShape shape, bool ball) { visit(part, item, shape, ball); });
+            visit(2 * i, item, item.shape, false);
+            if (item.ball) visit(2 * i + 1, item, RunShape(PrimitiveKind::sphere), true);
         }
     };
     std::vector<std::uint64_t> all;

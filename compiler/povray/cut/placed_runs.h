@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/piece.h"
 
 namespace graftal {
@@ -15,17 +15,17 @@ namespace graftal {
 class PlacedRuns {
   public:
     struct Range {
-        std::shared_ptr<const RunSource> source;
+        std::shared_ptr<const CellSource> source;
         std::size_t first = 0, count = 0;                  ///< items
         Piece piece;                                       ///< the cell of the items
-        std::shared_ptr<const std::vector<bool>> left_out; ///< RunPlacements::left_out
+        std::shared_ptr<const std::vector<bool>> left_out; ///< PackedPlacements::left_out
     };
 
     /// Whether the parts of a cell can be placed as they are: none has a picture, or is to be drawn wider.
     static bool can_hold(const CutGraph& cut, const Piece& piece);
 
     /// Requires can_hold().
-    void add(const Piece& piece, const RunCell& cell);
+    void add(const Piece& piece, const EdgeCell& cell);
 
     /// Primitives.
     std::size_t part_count() const { return parts_; }

@@ -19,9 +19,9 @@ PovrayBodies::PovrayBodies(const Cut& cut, const std::string& prefix) : cut_(cut
             placed[placement.body] = true;
             if (colours > 1) uses_[placement.body].palette = true;
         }
-        for (const RunPlacements& parts : group.runs)
+        for (const PackedPlacements& parts : group.packed)
             for (const std::uint32_t body : parts.body)
-                GRAFTAL_CHECK(body < cut.bodies.size(), "emit_povray: a part of a run without a body");
+                GRAFTAL_CHECK(body < cut.bodies.size(), "emit_povray: a packed placement without a body");
     }
     UniqueNames names(prefix + "M_");
     for (std::size_t i = 0; i < cut.bodies.size(); ++i) {

@@ -38,7 +38,7 @@ struct Bucket {
     std::uint32_t texture;
     std::optional<Interior> interior;
     std::vector<Range> ranges;
-    std::vector<const RunPlacements*> runs;
+    std::vector<const PackedPlacements*> packed;
     std::uint64_t count = 0;
 };
 
@@ -104,7 +104,7 @@ void Emitter::sort_into_buckets() {
     std::vector<std::vector<std::uint32_t>> buckets_of_texture;
     for (std::uint32_t g = 0; g < cut_.groups.size(); ++g) {
         const PlacementGroup& group = cut_.groups[g];
-        if (group.placements.empty() && group.runs.empty()) continue;
+        if (group.placements.empty() && group.packed.empty()) continue;
         const std::uint32_t texture = textures_.texture_of(group);
         const std::optional<Interior> interior = declared_interior(group.material);
         if (texture == buckets_of_texture.size()) buckets_of_texture.emplace_back();
@@ -130,9 +130,9 @@ void Emitter::sort_into_buckets() {
             close_range(i);
         }
         close_range(group.placements.size());
-        for (const RunPlacements& parts : group.runs) {
-            bucket.runs.push_back(&parts);
-            bucket.count += part_count(parts);
+        for (const PackedPlacements& parts : group.packed) {
+            bucket.packed.push_back(&parts);
+            bucket.count += parts.size();
         }
     }
     std::erase_if(buckets_, [](const Bucket& bucket) { return bucket.count == 0; });
@@ -166,9 +166,9 @@ bool Emitter::write_bucket(const Bucket& bucket) {
             const Placement& placement = cut_.groups[range.group].placements[i];
             write(placement.body, placement.world_from_body);
         }
-    for (const RunPlacements* const parts : bucket.runs)
-        for_each_placement(
-            *parts, [&](const Placement& placement) { write(placement.body, placement.world_from_body); });
+    for (const PackedPlacements* const parts : bucket.packed)
+        parts->for_each(
+            [&](const Placement& placement) { write(placement.body, placement.world_from_body); });
     if (!single) out_ << "  " << texture << "\n}\n";
     return !out_.stopped();
 }

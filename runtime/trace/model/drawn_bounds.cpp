@@ -6,7 +6,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/graph/components.h"
 #include "compiler/primitives/primitive.h"
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 
 namespace graftal {
 
@@ -60,26 +60,26 @@ class Layering {
     }
 
     /// A cell of the same parts, of the copies of their primitives.
-    std::shared_ptr<const RunCell> copy_of(const std::shared_ptr<const RunCell>& cell) {
-        std::shared_ptr<const RunSource>& source = sources_[cell->source.get()];
+    std::shared_ptr<const EdgeCell> copy_of(const std::shared_ptr<const EdgeCell>& cell) {
+        std::shared_ptr<const CellSource>& source = sources_[cell->source.get()];
         if (!source) {
-            RunSource copy = *cell->source;
+            CellSource copy = *cell->source;
             for (std::size_t shape = 0; shape < copy.child.size(); ++shape)
                 if (const auto& primitive = cut_.nodes[copy.child[shape]].primitive;
                     primitive && RunShape(*primitive).index() == shape)
                     copy.child[shape] = copy_of(copy.child[shape], 0);
-            source = std::make_shared<const RunSource>(std::move(copy));
+            source = std::make_shared<const CellSource>(std::move(copy));
         }
-        RunCell copy = *cell;
+        EdgeCell copy = *cell;
         copy.source = source;
-        return std::make_shared<const RunCell>(std::move(copy));
+        return std::make_shared<const EdgeCell>(std::move(copy));
     }
 
     const CutGraph& cut_;
     LayeredGraph result_;
     std::vector<std::uint32_t> steps_; ///< by copy
     std::map<std::pair<NodeId, std::uint32_t>, NodeId> copies_;
-    std::map<const RunSource*, std::shared_ptr<const RunSource>> sources_;
+    std::map<const CellSource*, std::shared_ptr<const CellSource>> sources_;
 };
 
 } // namespace

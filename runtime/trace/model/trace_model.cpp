@@ -133,7 +133,7 @@ class ModelBuilder {
         model_.nodes.push_back(node);
     }
 
-    void add_cell(const RunCell& cell, const Affine& frame_from_graph, TraceNode& node) {
+    void add_cell(const EdgeCell& cell, const Affine& frame_from_graph, TraceNode& node) {
         node.run = run_of(*cell.source);
         node.first_edge = static_cast<std::uint32_t>(model_.edges.size());
         std::vector<BoxedItem> items;
@@ -143,7 +143,7 @@ class ModelBuilder {
         node.tree = build_packed_tree(items, model_.boxes, model_.packed_boxes);
     }
 
-    std::uint32_t run_of(const RunSource& source) {
+    std::uint32_t run_of(const CellSource& source) {
         const auto [place, added] = run_of_.emplace(&source, static_cast<std::uint32_t>(model_.runs.size()));
         if (!added) return place->second;
         TraceRun& run = model_.runs.emplace_back();
@@ -169,7 +169,7 @@ class ModelBuilder {
         model_.boxes.reserve(model_.boxes.size() + items / items_a_node + 8 * cut_.nodes.size());
     }
 
-    void add_look(const RunSource& source, RunShape shape, std::uint16_t colour, TraceRun& run) {
+    void add_look(const CellSource& source, RunShape shape, std::uint16_t colour, TraceRun& run) {
         if (run.edge_of(shape, colour) != no_edge) return;
         TraceEdge edge;
         edge.child = source.child[shape.index()];
@@ -284,7 +284,7 @@ class ModelBuilder {
     bool spells_out_groups_ = true;
     const CutGraph& cut_;
     const DrawnBounds& bounds_;
-    std::map<const RunSource*, std::uint32_t> run_of_;
+    std::map<const CellSource*, std::uint32_t> run_of_;
 };
 
 /// Least detail of a unit: at the far end of the model, were it out of the picture.

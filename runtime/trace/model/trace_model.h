@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/graph/ending.h"
-#include "compiler/detail/graph/run_cells.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/detail/projection.h"
 #include "compiler/detail/self_shadow.h"

@@ -292,20 +292,15 @@ void Traversal::meet_flat_items(const FlatPart& part, const Ball& ball, const Ra
                                 std::uint32_t frame_number) {
     const std::uint32_t number = model_.edges[part.edge & ~from_cut].child;
     const TraceRun& run = model_.runs[model_.nodes[number].run];
-    const RunCell& cell = *model_.source(number).cell;
     const Affine world_from_run = part.world_from_node.affine() * inverse(model_.graph_from_frame[number]);
-    const auto meet = [&](RunShape shape, const Affine& run_from_body, std::uint16_t colour) {
+    model_.source(number).cell->for_each([&](const CellEdge& edge) {
         ++visits_;
-        if (!meet_leaf(shape.primitive(), world_from_run * run_from_body, part.faint, ball, range)) return;
+        const Affine world_from_body = world_from_run * edge.node_from_child;
+        if (!meet_leaf(edge.shape.primitive(), world_from_body, part.faint, ball, range)) return;
         keep_flat_way(frame_number);
-        way_.push_back(run.edge_of(shape, colour));
-        best_.turns = length_in_turns(run_from_body.linear);
-    };
-    for (std::size_t i = cell.first; i < cell.first + cell.count; ++i) {
-        const RunItem& item = (*run.run)[i];
-        meet(item.shape, run_from_body(item), item.colour);
-        if (item.ball) meet(PrimitiveKind::sphere, run_from_ball(item), item.colour);
-    }
+        way_.push_back(run.edge_of(edge.shape, edge.colour));
+        best_.turns = length_in_turns(edge.node_from_child.linear);
+    });
 }
 
 } // namespace graftal

@@ -392,7 +392,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
     /// Meets an item of the frame's run (runs.h).
     void meet_item(const Entry& entry);
     /// `ray`: from where the entry begins, in units of the frame's.
-    void meet_body(RunShape shape, const Affine& run_from_body, const TraceRun& run, const RunItem& item,
+    void meet_body(RunShape shape, const Affine& run_from_body, const TraceRun& run, std::uint16_t colour,
                    const Ray& ray, const Entry& entry);
 
     // Intersections (leaves.h):

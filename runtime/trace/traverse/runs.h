@@ -19,17 +19,17 @@ void Traversal::Kernel<instructions, any>::meet_item(const Entry& entry) {
                   run_from_frame.linear * vec3_of(frame.direction)};
     const Vec3 from_base = ray.origin - item.base;
     if (item.shape.is_sphere() || !passes_line(ray.direction, from_base, item.axis, item.radius))
-        meet_body(item.shape, run.pictured ? run_from_body(item) : run_from_round_body(item), run, item, ray,
-                  entry);
+        meet_body(item.shape, run.pictured ? run_from_body(item) : run_from_round_body(item), run,
+                  item.colour, ray, entry);
     if (item.ball && !passes_point(ray.direction, from_base - item.axis, item.radius))
         meet_body(PrimitiveKind::sphere, run.pictured ? run_from_ball(item) : run_from_round_ball(item), run,
-                  item, ray, entry);
+                  item.colour, ray, entry);
 }
 
 template<Instructions instructions, bool any>
 void Traversal::Kernel<instructions, any>::meet_body(RunShape shape, const Affine& run_from_body,
-                                                     const TraceRun& run, const RunItem& item, const Ray& ray,
-                                                     const Entry& entry) {
+                                                     const TraceRun& run, std::uint16_t colour,
+                                                     const Ray& ray, const Entry& entry) {
     const Frame& frame = frames[entry.frame];
     Ray inner;
     double largest;
@@ -42,7 +42,7 @@ void Traversal::Kernel<instructions, any>::meet_body(RunShape shape, const Affin
     std::uint32_t look = no_edge;
     double turns = 1;
     if (model.clear_texels) {
-        look = run.edge_of(shape, item.colour);
+        look = run.edge_of(shape, colour);
         turns = length_in_turns(run_from_body.linear);
         for (int crossing = 0; self.is_clear(look, entry.frame, turns, inner(hit.t)); ++crossing) {
             near.least = hit.t;
@@ -51,7 +51,7 @@ void Traversal::Kernel<instructions, any>::meet_body(RunShape shape, const Affin
     }
     if (!set_best(base + hit.t / speed)) return;
     if (look == no_edge) {
-        look = run.edge_of(shape, item.colour);
+        look = run.edge_of(shape, colour);
         turns = length_in_turns(run_from_body.linear);
     }
     self.best_.normal = hit.normal;

@@ -44,8 +44,8 @@ Graph model() {
     run->add(item);
     Object object;
     object.name = "parts";
-    object.run = run;
-    object.run_materials = {std::nullopt, MaterialId{0}};
+    object.packed.run = run;
+    object.packed.materials = {std::nullopt, MaterialId{0}};
     Object root;
     root.name = "root";
     root.instances.push_back({graph.add(std::move(object)), Affine::scale(Vec3(2.0)), {}, {}, {}});

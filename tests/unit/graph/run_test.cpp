@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -28,8 +30,8 @@ Graph of_run(const graftal::Run& run) {
     auto copy = std::make_shared<graftal::Run>();
     for (std::size_t i = 0; i < run.size(); ++i)
         copy->add(run[i]);
-    object.run = std::move(copy);
-    object.run_materials.resize(1);
+    object.packed.run = std::move(copy);
+    object.packed.materials.resize(1);
     graph.root = graph.add(std::move(object));
     return graph;
 }
@@ -83,7 +85,7 @@ TEST(Run, EqualsTheInstancesThatItMeans) {
     cone.ball = false;
     run.add(cone);
     const Graph with_run = of_run(run);
-    EXPECT_EQ(run_part_count(with_run), 3u);
+    EXPECT_EQ(edge_count(with_run), 3u);
     EXPECT_EQ(instance_count(with_run), 0u);
 
     Graph spelt;
@@ -102,6 +104,43 @@ TEST(Run, EqualsTheInstancesThatItMeans) {
     EXPECT_TRUE(equal(spelt, with_run));
     spelt.objects[spelt.root].instances.back().parent_from_child.translation.x = 1e-300;
     EXPECT_FALSE(equal(with_run, spelt));
+}
+
+TEST(PackedEdges, AreMadeWhereTheyAreLookedAt) {
+    auto run = std::make_shared<graftal::Run>();
+    run->add(segment({0, 0, 0}, {0, 1, 0}, 0.1));
+    RunItem cone = segment({0, 1, 0}, {0, 0.5, 0.25}, 0.2);
+    cone.shape = PrimitiveKind::cone;
+    cone.ball = false;
+    cone.colour = 1;
+    run->add(cone);
+    PackedEdges edges{run, {std::nullopt, MaterialId{7}}};
+    std::vector<PackedEdge> made;
+    for (const PackedEdge& edge : edges)
+        made.push_back(edge);
+    ASSERT_EQ(made.size(), 3u);
+    EXPECT_EQ(edges.size(), 3u);
+    EXPECT_EQ(made[0].primitive, PrimitiveKind::cylinder);
+    EXPECT_EQ(made[0].parent_from_child, run_from_body((*run)[0]));
+    EXPECT_EQ(made[0].material, std::nullopt);
+    EXPECT_EQ(made[1].primitive, PrimitiveKind::sphere);
+    EXPECT_EQ(made[1].parent_from_child, run_from_ball((*run)[0]));
+    EXPECT_EQ(made[2].primitive, PrimitiveKind::cone);
+    EXPECT_EQ(made[2].parent_from_child, run_from_body(cone));
+    EXPECT_EQ(made[2].material, MaterialId{7});
+    EXPECT_EQ(edges.item_count(), 2u);
+    EXPECT_EQ(edges.material_of_item(1), MaterialId{7});
+    EXPECT_EQ(edges.unsound_item(), std::nullopt);
+    edges.materials.pop_back();
+    EXPECT_EQ(edges.unsound_item(), 1u);
+}
+
+TEST(PackedEdges, OfNoRunAreNone) {
+    const PackedEdges edges;
+    EXPECT_FALSE(edges);
+    EXPECT_EQ(edges.size(), 0u);
+    EXPECT_EQ(edges.begin(), edges.end());
+    EXPECT_EQ(edges.unsound_item(), std::nullopt);
 }
 
 TEST(Run, KnowsWhatIsSound) {

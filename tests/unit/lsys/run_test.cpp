@@ -24,7 +24,7 @@ CompiledLsys compiled(const std::string& statements, unsigned steps, std::uint64
 std::size_t run_items(const Graph& graph) {
     std::size_t count = 0;
     for (const Object& object : graph.objects)
-        if (object.run) count += object.run->size();
+        count += object.packed.item_count();
     return count;
 }
 

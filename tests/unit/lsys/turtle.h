@@ -12,7 +12,6 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/graph/graph.h"
-#include "compiler/graph/run.h"
 #include "compiler/languages/lower.h"
 #include "tests/unit/lsys/words.h"
 
@@ -192,13 +191,9 @@ class Unfolding {
     void unfold(ObjectId id, const Affine& place, int material) {
         const Object& object = graph_.objects[id];
         if (object.primitive) return add(*object.primitive, place, material);
-        for (std::size_t i = 0; object.run && i < object.run->size(); ++i) {
-            const RunItem& item = (*object.run)[i];
-            const auto& own = object.run_materials[item.colour];
-            const int colour = own ? static_cast<int>(*own) : material;
-            add(item.shape.primitive(), place * run_from_body(item), colour);
-            if (item.ball) add(PrimitiveKind::sphere, place * run_from_ball(item), colour);
-        }
+        for (const PackedEdge& edge : object.packed)
+            add(edge.primitive, place * edge.parent_from_child,
+                edge.material ? static_cast<int>(*edge.material) : material);
         for (const Instance& instance : object.instances)
             unfold(instance.master, place * instance.parent_from_child,
                    instance.material ? static_cast<int>(*instance.material) : material);

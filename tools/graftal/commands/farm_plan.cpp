@@ -75,7 +75,7 @@ std::string refusal(const FarmOptions& farm, const Options& planned) {
     if (!farm.sweeps.empty() && !farm.result.ends_with(".png") && !farm.result.empty())
         return fmt::format("--result: '{}': the name of a contact sheet must end in .png", farm.result);
     if (!farm.sweeps.empty() && (render.aovs || render.format == SampleFormat::linear16))
-        return "the pictures of a sweep are PNGs for people: leave out --aovs and --linear";
+        return "the pictures of a sweep are PNGs for people: leave out --aovs and --test-linear";
     const auto unwritable = [](const std::string& word) { return !is_printable(word); };
     if (const auto word = std::ranges::find_if(farm.words, unwritable); word != farm.words.end())
         return fmt::format("'{}': the words of a job are in UTF-8, without line ends and other control "

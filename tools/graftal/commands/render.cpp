@@ -38,6 +38,7 @@ std::string start_text(const Engine& engine, const RenderOptions& render, const 
 } // namespace
 
 int run_render(const Options& options) {
+    if (options.watch) return run_watch(options);
     ProgressBar bar(!options.quiet);
     RenderOptions render = options.render;
     render.progressive = options.progressive.value_or(!render.tile && options.engine == &engines().front());

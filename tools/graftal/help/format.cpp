@@ -30,8 +30,7 @@ const std::vector<OptionGroup>& option_groups() {
         {"Native engine", {"--progressive", "--no-progressive", "--samples", "--noise", "--aovs"}},
         {"POV-Ray", {"--keep", "--visible-only"}},
         {"For experts",
-         {"--after", "--root", "--exact", "--flatten", "--linear", "--listed-lights", "--unconfined",
-          "--dump-after", "--time"}},
+         {"--after", "--root", "--exact", "--flatten", "--unconfined", "--dump-after", "--time"}},
     };
     return groups;
 }
@@ -66,7 +65,15 @@ class GroupedFormatter : public CLI::Formatter {
 
 } // namespace
 
+bool is_for_tests(const CLI::Option& option) {
+    return option.get_name().starts_with("--test-");
+}
+
 void group_options(CLI::App& command) {
+    for (CLI::Option* const option : command.get_options())
+        if (is_for_tests(*option)) option->group("Tests"); // no heading of the help
+    for (CLI::App* const action : command.get_subcommands([](const CLI::App*) { return true; }))
+        group_options(*action);
     constexpr std::size_t most_in_one_list = 15;
     if (command.get_options().size() <= most_in_one_list) return;
     for (const OptionGroup& group : option_groups())

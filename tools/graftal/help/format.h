@@ -7,6 +7,9 @@
 
 namespace graftal {
 
+/// Whether only our tests use the option: help, manual and completions do not show it.
+bool is_for_tests(const CLI::Option& option);
+
 /// Puts the options of a command under headings, such as "Camera", if there are too many for one list.
 void group_options(CLI::App& command);
 

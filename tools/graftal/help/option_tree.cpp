@@ -79,7 +79,8 @@ CommandTree tree_below(const CLI::App& app, std::vector<std::string> path) {
     tree.notes = footer.notes;
     tree.examples = plain_examples(footer.examples);
     for (const CLI::Option* const option : app.get_options())
-        (option->get_positional() ? tree.operands : tree.options).push_back(entry_of(*option));
+        if (!is_for_tests(*option))
+            (option->get_positional() ? tree.operands : tree.options).push_back(entry_of(*option));
     for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; }))
         tree.commands.push_back(tree_below(*command, path));
     return tree;

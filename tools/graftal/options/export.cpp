@@ -90,7 +90,7 @@ void add_export(CLI::App& app, Options& options) {
                "  graftal export fern.rifs --error 2 -o fern.ply");
 }
 
-std::string complete_export(const Options& options) {
+std::string complete_export(Options& options) {
     if (options.render.output.empty())
         return fmt::format("name the file with '-o FILE'; its ending says the format: {}", export_endings());
     const ExportFormat* const format = find_export_format(options.render.output);

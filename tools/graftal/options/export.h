@@ -11,6 +11,6 @@ namespace graftal {
 void add_export(CLI::App& app, Options& options);
 
 /// The problem with options that are each right, or "".
-std::string complete_export(const Options& options);
+std::string complete_export(Options& options);
 
 } // namespace graftal

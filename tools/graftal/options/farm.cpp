@@ -98,7 +98,7 @@ void add_submit(CLI::App& farm, Options& options) {
         [](const std::string& text) { return parse_whole(text, 1, 100'000); },
         [&own](std::uint64_t count) { own.at_once = static_cast<int>(count); });
     add_value(
-        app, "--group", "N",
+        app, "--test-group", "N",
         "With --slurm: so many tasks in each index of the array (default: a minute's worth by the estimate)",
         "a whole number from 1 to 100000",
         [](const std::string& text) { return parse_whole(text, 1, 100'000); },
@@ -229,14 +229,14 @@ std::vector<std::string> take_foreign_words(std::vector<std::string>& words) {
     return planned;
 }
 
-std::string complete_farm(const Options& options) {
+std::string complete_farm(Options& options) {
     const FarmOptions& own = options.farm;
     if (own.folder.empty()) return "JOB: name a folder";
     if (own.action == FarmAction::plan) return refusal_of_plan(own);
     if (own.action != FarmAction::submit) return {};
     if (own.local.has_value() == own.slurm) return "give one of --local N and --slurm";
     if (own.local && (own.resume || own.at_once > 0 || own.group > 0 || !own.words.empty()))
-        return "--resume, --at-once, --group and options for sbatch go with --slurm";
+        return "--resume, --at-once and options for sbatch go with --slurm";
     return {};
 }
 

@@ -47,6 +47,6 @@ void add_farm(CLI::App& app, Options& options);
 std::vector<std::string> take_foreign_words(std::vector<std::string>& words);
 
 /// The problem with options that are each right, or "".
-std::string complete_farm(const Options& options);
+std::string complete_farm(Options& options);
 
 } // namespace graftal

@@ -9,6 +9,7 @@
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/number_range.h"
 #include "compiler/support/printable.h"
+#include "tools/graftal/commands.h"
 #include "tools/graftal/help/usage_errors.h"
 #include "tools/graftal/options/sweep_values.h"
 #include "tools/graftal/options/values.h"
@@ -276,14 +277,14 @@ std::string engines_text() {
 
 } // namespace
 
-CLI::Option* add_bits(CLI::App& app, Options& options) {
+void add_bits(CLI::App& app, Options& options) {
     const auto read = [](const std::string& text) {
         return text == "8"    ? std::optional(SampleFormat::srgb8)
                : text == "16" ? std::optional(SampleFormat::srgb16)
                               : std::nullopt;
     };
-    return add_value(app, "--bits", "8|16", "Bits of each colour of a PNG (default 8)", "8 or 16", read,
-                     [&options](SampleFormat format) { options.render.format = format; });
+    add_value(app, "--bits", "8|16", "Bits of each colour of a PNG (default 8)", "8 or 16", read,
+              [&options](SampleFormat format) { options.render.format = format; });
 }
 
 void add_drawing(CLI::App& app, Options& options) {
@@ -306,7 +307,7 @@ void add_drawing(CLI::App& app, Options& options) {
         ->check(CLI::Range(0.0, 255.0).description(""))
         ->type_name("N")
         ->take_last();
-    app.add_flag("--listed-lights", options.render.listed_lights,
+    app.add_flag("--test-listed-lights", options.render.listed_lights,
                  "Draw soft light from the list of lights that POV-Ray gets");
     app.add_flag("--unconfined", options.render.unconfined,
                  "Run POV-Ray with your permissions, your environment and no limits (for a program in its "
@@ -326,19 +327,6 @@ void add_drawing(CLI::App& app, Options& options) {
 
 namespace {
 
-std::string usual_ending(Command command) {
-    switch (command) {
-    case Command::compile:
-        return ".pov";
-    case Command::export_model:
-        return ".glb";
-    case Command::graph:
-        return ".svg";
-    default:
-        return ".png";
-    }
-}
-
 /// Whether an output names a folder: one that is there, or one by the slash at its end.
 bool names_folder(const std::string& output) {
     std::error_code error;
@@ -349,12 +337,11 @@ bool names_folder(const std::string& output) {
 
 std::string refusal_of_folder(Options& options) {
     std::string& output = options.render.output;
-    if (options.command == Command::animate || options.command == Command::farm || !names_folder(output))
-        return {};
-    if (options.command != Command::import_foreign)
+    if (options.command->folder == FolderAsOutput::is_written || !names_folder(output)) return {};
+    if (options.command->folder == FolderAsOutput::refused)
         return fmt::format(
             "'{}' is a folder: name a file in it, such as '-o {}'", output,
-            (std::filesystem::path(output) / ("NAME" + usual_ending(options.command))).string());
+            (std::filesystem::path(output) / (std::string("NAME") + options.command->ending)).string());
     if (!output.ends_with('/')) output += '/';
     return {};
 }

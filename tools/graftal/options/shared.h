@@ -43,7 +43,7 @@ void add_inspecting_work(CLI::App& app, Options& options);
 /// Options of add_camera(), and those for how much of the model is drawn.
 void add_view(CLI::App& app, Options& options);
 /// `--bits`, of a PNG for people.
-CLI::Option* add_bits(CLI::App& app, Options& options);
+void add_bits(CLI::App& app, Options& options);
 /// Options of commands that make pictures.
 void add_drawing(CLI::App& app, Options& options);
 

@@ -12,7 +12,7 @@
 
 #include "compiler/analysis/contraction.h"
 #include "compiler/detail/graph/build_cut_graph.h"
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/povray/cut/cut.h"
 #include "tests/unit/povray/cut/cut_graph.h"
@@ -67,8 +67,8 @@ Graph two_branches(std::size_t count, bool spelt, int more = 0) {
             if (item.ball) add(PrimitiveKind::sphere, run_from_ball(item), item.colour);
         }
     } else {
-        object.run = run;
-        object.run_materials = {MaterialId{0}, MaterialId{1}};
+        object.packed.run = run;
+        object.packed.materials = {MaterialId{0}, MaterialId{1}};
     }
     Object root;
     root.name = "two";
@@ -151,8 +151,8 @@ TEST(RunCut, PartsArePlacedWhereTheRunHasThem) {
     std::size_t ranges = 0;
     for (const PlacementGroup& group : cut.groups) {
         EXPECT_TRUE(group.placements.empty()); // each would take as much as three parts do
-        for (const RunPlacements& run : group.runs) {
-            parts += part_count(run);
+        for (const PackedPlacements& packed : group.packed) {
+            parts += packed.size();
             ++ranges;
         }
     }
@@ -175,8 +175,8 @@ TEST(RunCut, PartsThatCoincideArePlacedOnce) {
     Graph graph = with_materials();
     Object object;
     object.name = "pile";
-    object.run = run;
-    object.run_materials = {MaterialId{0}};
+    object.packed.run = run;
+    object.packed.materials = {MaterialId{0}};
     graph.root = graph.add(std::move(object));
     EXPECT_EQ(spelt_out(Bounded(std::move(graph))).placement_count, 4u);
 }
@@ -246,8 +246,8 @@ TEST(RunCut, ProxiesAreAsDarkAsWhatTheyStandFor) {
         Graph graph;
         Object object;
         object.name = "cloud";
-        object.run = run;
-        object.run_materials.resize(1);
+        object.packed.run = run;
+        object.packed.materials.resize(1);
         graph.root = graph.add(std::move(object));
         const Bounded model(std::move(graph));
         const CutGraph cut = build_cut_graph(model.graph, model.bounds);

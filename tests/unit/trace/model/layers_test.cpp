@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 #include "tests/unit/trace/models.h"
 
 namespace graftal {
@@ -22,8 +22,8 @@ TEST(Layers, PartsOfRunsAreCopiesOfTheirPrimitivesToo) {
         run->add(item);
     }
     Object twigs{"twigs", {}, {}, {}, {}};
-    twigs.run = run;
-    twigs.run_materials.emplace_back();
+    twigs.packed.run = run;
+    twigs.packed.materials.emplace_back();
     const ObjectId branch = graph.add({"branch", {}, {}, {}, {}});
     const ObjectId master = graph.add(std::move(twigs));
     test::place(graph, branch, master, {});
@@ -36,7 +36,8 @@ TEST(Layers, PartsOfRunsAreCopiesOfTheirPrimitivesToo) {
     ASSERT_EQ(layers.source.size(), layers.cut.nodes.size());
     ASSERT_NE(layers.cut.nodes.size(), model->prepared.cut.nodes.size()) << "nothing to copy";
     std::size_t parts = 0;
-    for (const CutNode& node : layers.cut.nodes)
+    for (const CutNode& node : layers.cut.nodes) {
+        if (node.cell) EXPECT_EQ(edge_count(node, false), node.cell->count) << "no balls";
         for_each_edge(node, false, [&](const CutEdge& edge) {
             ASSERT_LT(edge.child, layers.cut.nodes.size());
             if (node.cell) {
@@ -44,6 +45,7 @@ TEST(Layers, PartsOfRunsAreCopiesOfTheirPrimitivesToo) {
                 ++parts;
             }
         });
+    }
     EXPECT_GE(parts, 3u);
 }
 

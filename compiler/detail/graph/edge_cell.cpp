@@ -1,8 +1,9 @@
-#include "compiler/detail/graph/run_cells.h"
+#include "compiler/detail/graph/edge_cell.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -13,13 +14,15 @@ namespace {
 
 using std::numbers::pi;
 
-/// Limits for runs, as cut_graph.cpp has them for other objects.
-constexpr std::size_t uncullable_leaves_of_run = 16;
-constexpr double thinnest_proxy_of_run = 0.02;
+/// Limits for cells, as cut_graph.cpp has them for other objects.
+constexpr std::size_t uncullable_leaves_of_cell = 16;
+constexpr double thinnest_proxy_of_cell = 0.02;
 
-CutEdge edge_to(const RunSource& source, const RunItem& item, RunShape shape, const Affine& place,
-                double length) {
-    CutEdge edge;
+CellEdge edge_to(const CellSource& source, const RunItem& item, RunShape shape, const Affine& place,
+                 double length) {
+    CellEdge edge;
+    edge.shape = shape;
+    edge.colour = item.colour;
     edge.child = source.child[shape.index()];
     edge.node_from_child = place;
     edge.material = source.materials[item.colour];
@@ -38,11 +41,10 @@ double mean_shadow(Vec3 half) {
     return pi * std::pow((ab + bc + ca) / 3, 1 / p);
 }
 
-class RunCellBuilder {
+class CellBuilder {
   public:
-    RunCellBuilder(CutGraph& cut, const std::shared_ptr<const RunSource>& source, const RunBounds& bounds,
-                   const std::vector<Material>& materials)
-        : cut_(cut), source_(source), bounds_(bounds), materials_(materials) {}
+    CellBuilder(CutGraph& cut, std::shared_ptr<const CellSource> source, const RunBounds& bounds)
+        : cut_(cut), source_(std::move(source)), bounds_(bounds) {}
 
     void fill(CutNode& node, std::size_t level, std::size_t index) {
         const Box& box = bounds_.boxes(level)[index];
@@ -80,14 +82,14 @@ class RunCellBuilder {
     }
 
     void fill_cell(CutNode& node, const Box& box, std::size_t first, std::size_t most) {
-        auto cell = std::make_shared<RunCell>();
+        auto cell = std::make_shared<EdgeCell>();
         const Run& run = *source_->run;
         *cell = {source_, first, std::min(most, run.size() - first), box};
         const Vec3 centre = box.centre();
         double reach = 0, shadow = 0;
         std::size_t leaves = 0;
         MeanColour mean{Rgb(0.0), 0};
-        std::vector<double> seen(materials_.size() + 1, 0);
+        std::vector<double> seen(cut_.materials.size() + 1, 0);
         for (std::size_t i = first; i < first + cell->count; ++i) {
             const RunItem& item = run[i];
             reach = std::max({reach, glm::distance(centre, item.base) + item.radius,
@@ -100,15 +102,15 @@ class RunCellBuilder {
             cell->flattest = std::min(cell->flattest, std::min(item.radius / length, length / item.radius));
             if (item.ball) note(*cell, PrimitiveKind::sphere, item.radius);
             const std::optional<MaterialId>& material = source_->materials[item.colour];
-            seen[material.value_or(static_cast<MaterialId>(materials_.size()))] += area;
+            seen[material.value_or(static_cast<MaterialId>(cut_.materials.size()))] += area;
             if (material)
-                mean.fixed += area * materials_[*material].rgb;
+                mean.fixed += area * cut_.materials[*material].rgb;
             else
                 mean.open += area;
         }
         node.mean = shadow > 0 ? MeanColour{mean.fixed / shadow, mean.open / shadow} : MeanColour{};
-        node.finish = most_seen(seen, materials_);
-        node.cullable = leaves > uncullable_leaves_of_run;
+        node.finish = most_seen(seen, cut_.materials);
+        node.cullable = leaves > uncullable_leaves_of_cell;
         node.ball = {centre, std::min(reach, 0.5 * glm::length(box.size()))};
         // Parts that lie anyhow in the ellipsoid hide each other: so much of its shadow is left dark (Beer's
         // law).
@@ -118,10 +120,10 @@ class RunCellBuilder {
         node.cell = std::move(cell);
     }
 
-    static void note(RunCell& cell, RunShape shape, double stretch) {
+    static void note(EdgeCell& cell, RunShape shape, double stretch) {
         const double square = stretch * stretch;
         const std::int32_t quarter_octave = std::ilogb(square * square);
-        for (RunCell::Alike& alike : cell.alike)
+        for (EdgeCell::Alike& alike : cell.alike)
             if (alike.shape == shape && alike.quarter_octave == quarter_octave) {
                 ++alike.count;
                 return;
@@ -131,13 +133,12 @@ class RunCellBuilder {
 
     static Vec3 half_of(const Box& box) {
         const Vec3 half = 0.5 * box.size();
-        return glm::max(half, Vec3(thinnest_proxy_of_run * std::max({half.x, half.y, half.z, 1e-12})));
+        return glm::max(half, Vec3(thinnest_proxy_of_cell * std::max({half.x, half.y, half.z, 1e-12})));
     }
 
     CutGraph& cut_;
-    const std::shared_ptr<const RunSource>& source_;
+    const std::shared_ptr<const CellSource> source_;
     const RunBounds& bounds_;
-    const std::vector<Material>& materials_;
 };
 
 } // namespace
@@ -149,25 +150,37 @@ double mean_shadow(const RunItem& item) {
     return (2 * pi * middle * glm::length(item.axis) + (item.ball ? 4 : 2) * pi * middle * middle) / 4;
 }
 
-CutEdge edge_to_body(const RunSource& source, const RunItem& item) {
+CellEdge edge_to_body(const CellSource& source, const RunItem& item) {
     return edge_to(source, item, item.shape, run_from_body(item), glm::length(item.axis));
 }
 
-CutEdge edge_to_ball(const RunSource& source, const RunItem& item) {
+CellEdge edge_to_ball(const CellSource& source, const RunItem& item) {
     return edge_to(source, item, PrimitiveKind::sphere, run_from_ball(item), item.radius);
 }
 
-std::size_t edge_count(const CutNode& node, bool cut) {
-    if (!node.cell || cut) return followed_edges(node, cut).size();
-    std::size_t count = 0;
-    for (std::size_t i = node.cell->first; i < node.cell->first + node.cell->count; ++i)
-        count += (*node.cell->source->run)[i].ball ? 2 : 1;
-    return count;
+std::size_t EdgeCell::size() const {
+    std::size_t edges = 0;
+    for (const Alike& some : alike)
+        edges += some.count;
+    return edges;
 }
 
-void add_run_nodes(CutGraph& cut, CutNode& node, const std::shared_ptr<const RunSource>& source,
-                   const RunBounds& bounds) {
-    RunCellBuilder(cut, source, bounds, cut.materials).fill(node, bounds.level_count() - 1, 0);
+std::size_t edge_count(const CutNode& node, bool cut) {
+    return node.cell && !cut ? node.cell->size() : followed_edges(node, cut).size();
+}
+
+void add_cells(CutGraph& cut, CutNode& node, const PackedEdges& edges, const RunBounds& bounds,
+               const std::function<NodeId(const Primitive&)>& node_of) {
+    auto source = std::make_shared<CellSource>();
+    static_cast<PackedEdges&>(*source) = edges;
+    std::array<bool, RunShape::count> met{};
+    for (std::size_t i = 0; i < edges.run->size(); ++i) {
+        const RunItem& item = (*edges.run)[i];
+        for (const RunShape shape : {item.shape, item.ball ? PrimitiveKind::sphere : item.shape})
+            if (!std::exchange(met[shape.index()], true))
+                source->child[shape.index()] = node_of(shape.primitive());
+    }
+    CellBuilder(cut, std::move(source), bounds).fill(node, bounds.level_count() - 1, 0);
 }
 
 } // namespace graftal

@@ -13,7 +13,7 @@ namespace graftal {
 
 class Run;
 
-/// What an instance of a round primitive would say.
+/// An edge to a round primitive, by value.
 struct PackedEdge {
     Primitive primitive = PrimitiveKind::sphere;
     Affine parent_from_child;

@@ -11,10 +11,10 @@
 
 #include "compiler/light/sky_picture.h"
 #include "compiler/lower/derivation.h"
-#include "compiler/lower/model_parameter.h"
 #include "compiler/lower/translator.h"
 #include "compiler/support/control.h"
 #include "compiler/support/files.h"
+#include "compiler/support/source.h"
 #include "compiler/support/status.h"
 #include "compiler/support/texture_facts.h"
 
@@ -59,6 +59,23 @@ struct LowerHelp {
     Translator translator = no_translator(); ///< reads the files of other programs
     const Files* files = &no_files();        ///< that the model may name
     ParsedFiles* parsed = nullptr;           ///< of lowerings before; null: each text is parsed anew
+};
+
+/// A number of the root model that LowerOptions::set may replace.
+struct ModelParameter {
+    enum class Kind : std::uint8_t {
+        let,
+        inner,   ///< in [0, 1]
+        setting, ///< of an L-system, such as its angle
+    };
+
+    Kind kind = Kind::let;
+    std::string name;
+    double value = 0;     ///< as it is set, or else as the text has it
+    Span span;            ///< the value in the text
+    bool literal = false; ///< the text has a number there, which an editor may replace; else an expression
+
+    bool operator==(const ModelParameter&) const = default;
 };
 
 /// Facts that lowering learns beside the graph.

@@ -12,7 +12,7 @@ inline constexpr int exit_fault = 1;
 inline constexpr int exit_usage = 2;
 inline constexpr int exit_environment = 3;
 
-/// What an output that is a folder means: the command writes none, writes into it, or writes the folder
+/// Meaning of an output that is a folder: the command writes none, writes into it, or writes the folder
 /// itself.
 enum class FolderAsOutput { refused, holds_files, is_written };
 

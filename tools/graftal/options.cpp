@@ -352,7 +352,7 @@ std::string complete_text(Options& options, const char* what, const char* one, c
 }
 
 std::string complete_compile(Options& options) {
-    const std::string wrong = complete_text(options, "a scene", ".pov", ".inc");
+    std::string wrong = complete_text(options, "a scene", ".pov", ".inc");
     if (wrong.empty() && !options.identifier.empty() && !options.render.output.ends_with(".inc"))
         return "--name names what an .inc declares: give '-o FILE.inc' too";
     return wrong;

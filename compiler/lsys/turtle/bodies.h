@@ -59,7 +59,7 @@ class TurtleBodies {
     std::size_t packed_count() const { return run_ ? run_->size() : 0; } ///< items
     /// Makes packed bodies that are marked by open_width thicker by a factor, and takes the marks away.
     void widen_packed(double factor);
-    /// What has been packed, if anything has. Requires that nothing is added afterwards.
+    /// The packed bodies, if there are any. Requires that nothing is added afterwards.
     PackedEdges take_packed();
 
   private:

@@ -37,7 +37,9 @@ TEST(Layers, PartsOfRunsAreCopiesOfTheirPrimitivesToo) {
     ASSERT_NE(layers.cut.nodes.size(), model->prepared.cut.nodes.size()) << "nothing to copy";
     std::size_t parts = 0;
     for (const CutNode& node : layers.cut.nodes) {
-        if (node.cell) EXPECT_EQ(edge_count(node, false), node.cell->count) << "no balls";
+        if (node.cell) {
+            EXPECT_EQ(edge_count(node, false), node.cell->count) << "no balls";
+        }
         for_each_edge(node, false, [&](const CutEdge& edge) {
             ASSERT_LT(edge.child, layers.cut.nodes.size());
             if (node.cell) {

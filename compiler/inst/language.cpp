@@ -1,7 +1,5 @@
 #include "compiler/inst/language.h"
 
-#include <utility>
-
 #include "compiler/inst/lower.h"
 #include "compiler/inst/parse/parser.h"
 
@@ -9,26 +7,17 @@ namespace graftal {
 
 namespace {
 
-class InstTree final : public ModelTree {
-  public:
-    explicit InstTree(InstModule file) : file_(std::move(file)) {}
-
-    InnerStatements inner_statements() const override { return {file_.scene, {}}; }
-    std::optional<Graph> lower(Lowering& lowering) const override { return lower_inst(file_, lowering); }
-
-  private:
-    InstModule file_;
-};
-
-std::unique_ptr<const ModelTree> parse(const SourceMap& sources, FileId file, const ForeignWords& foreign,
-                                       Diagnostics& diagnostics) {
-    return std::make_unique<InstTree>(parse_inst(sources, file, diagnostics, foreign));
+InnerStatements inner_of(const InstModule& file) {
+    return {file.scene, {}};
 }
 
 } // namespace
 
 Language inst_language() {
-    return {.extension = "inst", .keywords = inst_keywords, .inner_keywords = {}, .parse = parse};
+    return {.extension = "inst",
+            .keywords = inst_keywords,
+            .inner_keywords = {},
+            .parse = parse_tree<parse_inst, inner_of, lower_inst>};
 }
 
 } // namespace graftal

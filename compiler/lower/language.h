@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/graph/graph.h"
@@ -33,6 +34,20 @@ class ModelTree {
     /// a graph that verify() accepts. Requires that the file is the last of Lowering::loading.
     virtual std::optional<Graph> lower(Lowering& lowering) const = 0;
 };
+
+/// The tree of a file that `parse` has read, from the functions that know it.
+template<auto parse, auto inner, auto lowered>
+std::unique_ptr<const ModelTree> parse_tree(const SourceMap& sources, FileId file,
+                                            const ForeignWords& foreign, Diagnostics& diagnostics) {
+    using File = decltype(parse(sources, file, diagnostics, foreign));
+    struct Tree final : ModelTree {
+        explicit Tree(File read) : file(std::move(read)) {}
+        InnerStatements inner_statements() const override { return inner(file); }
+        std::optional<Graph> lower(Lowering& lowering) const override { return lowered(file, lowering); }
+        File file;
+    };
+    return std::make_unique<Tree>(parse(sources, file, diagnostics, foreign));
+}
 
 /// One language: a row of the table in languages/languages.h.
 struct Language {

@@ -18,9 +18,12 @@ std::string fault_of_coordinate(double coordinate) {
 }
 
 std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault) {
-    std::optional<MeshData> data = bytes.starts_with("ply\n") || bytes.starts_with("ply\r")
-                                       ? read_ply(bytes, fault)
-                                       : read_obj(bytes, fault);
+    const bool is_ply = bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
+    if (const std::size_t zero = bytes.find('\0'); !is_ply && zero != std::string_view::npos) {
+        fault = fmt::format("it is no OBJ or PLY mesh: byte {} is zero, as no text has it", zero + 1);
+        return std::nullopt;
+    }
+    std::optional<MeshData> data = is_ply ? read_ply(bytes, fault) : read_obj(bytes, fault);
     if (!data) return std::nullopt;
     if (data->triangles.empty()) {
         fault = data->vertices.empty()

@@ -250,6 +250,8 @@ TEST(MeshFile, RefusesDamagedObj) {
     EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\n"), HasSubstr("it holds no face"));
     for (const char* const strange : {"", "lsys tree { axiom F }\n", "{\"asset\": 1}"})
         EXPECT_THAT(fault_of_mesh(strange), HasSubstr("it holds no vertex")) << strange;
+    EXPECT_THAT(fault_of_mesh(std::string("\x80\nv 1", 5) + std::string(2, '\0') + "\nf 1 1 1\n"),
+                HasSubstr("it is no OBJ or PLY mesh: byte 6 is zero"));
 }
 
 constexpr const char* ply_header = "ply\nformat {} 1.0\ncomment none\nelement vertex 3\nproperty float x\n"

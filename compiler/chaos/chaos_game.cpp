@@ -51,12 +51,6 @@ std::uint32_t moves_to_settle(double rate) {
 
 } // namespace
 
-Paint paint_of(const Tint& tint) {
-    const PathTint path(tint);
-    return {static_cast<float>(path.premultiplied.r), static_cast<float>(path.premultiplied.g),
-            static_cast<float>(path.premultiplied.b), static_cast<float>(1 - path.alpha)};
-}
-
 class ChaosGame::Builder {
   public:
     Builder(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
@@ -179,7 +173,7 @@ class ChaosGame::Builder {
         Source source;
         source.state = id;
         source.surface.emplace(*graph_.objects[instance.master].primitive, instance.parent_from_child);
-        source.paint = paint_of(instance.tint);
+        source.paint = Paint(PathTint(instance.tint));
         source.material = instance.material.value_or(none);
         game_.sources_.push_back(std::move(source));
         source_weights_.push_back(flow);
@@ -263,7 +257,7 @@ class ChaosGame::Builder {
                                                components_.component_of[instance.master];
             Move move;
             move.map = instance.parent_from_child;
-            move.paint = paint_of(instance.tint);
+            move.paint = Paint(PathTint(instance.tint));
             move.to = arrival.user;
             move.material = instance.material.value_or(none);
             move.label = cyclic ? label_of(move.map) : 0;

@@ -11,6 +11,7 @@
 #include "compiler/chaos/surface.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
+#include "compiler/graph/path.h"
 
 // Random iteration (the chaos game) on an object-instance graph: points of the root, distributed as a random
 // walk down from the root would have them that takes each instance by its chance (chances.h).
@@ -23,20 +24,6 @@
 // down turned round too.
 
 namespace graftal {
-
-/// Look of a point: everything that is visible of it except its place.
-struct Paint {
-    float red = 0, green = 0, blue = 0; ///< premultiplied
-    float through = 1;                  ///< share of what lies behind
-
-    /// This paint behind that of an instance above it.
-    Paint under(const Paint& parent) const {
-        return {parent.red + parent.through * red, parent.green + parent.through * green,
-                parent.blue + parent.through * blue, parent.through * through};
-    }
-};
-
-Paint paint_of(const Tint& tint);
 
 struct ChaosPoint {
     Vec3 place;

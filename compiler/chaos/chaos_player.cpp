@@ -93,11 +93,10 @@ ChaosPoint ChaosPlayer::climb(Wanderer at, std::uint32_t material, const std::op
 }
 
 inline ChaosPoint ChaosPlayer::seen(const Wanderer& at, const Rgb& behind) const {
-    const float through = at.paint.through;
+    const auto& [fixed, open] = at.paint;
     return {at.place,
-            {at.paint.red + through * static_cast<float>(behind.r),
-             at.paint.green + through * static_cast<float>(behind.g),
-             at.paint.blue + through * static_cast<float>(behind.b)},
+            {fixed[0] + open * static_cast<float>(behind.r), fixed[1] + open * static_cast<float>(behind.g),
+             fixed[2] + open * static_cast<float>(behind.b)},
             at.map};
 }
 

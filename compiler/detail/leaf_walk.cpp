@@ -27,7 +27,7 @@ LeafWalk::LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequ
       limit_normals_(request.limit_normals), visit_{request.representative, request.steps, {}, 1, 0},
       cells_from_unit_(request.half_widths_from_unit / cell_half_widths) {
     for (const Painter& painter : painters)
-        paints_.push_back({painter.pair, {}, painter.inherited, request.material});
+        paints_.push_back({{{}, painter.inherited, request.material}, painter.pair});
     stack_.push_back(visit_);
     paint_stack_ = paints_;
 }
@@ -49,7 +49,7 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
         if (shape.primitive) {
             leaf.primitive = *shape.primitive;
             leaf.representative_from_leaf = visit_.representative_from_node;
-            for (const Paint& paint : paints_)
+            for (const Painted& paint : paints_)
                 leaf.colours.push_back(paint.tint.over(paint.inherited));
             return true;
         }
@@ -59,7 +59,7 @@ bool LeafWalk::next(WalkedLeaf& leaf) {
             if (shape.finish) leaf.material = shape.finish;
             leaf.primitive = PrimitiveKind::sphere;
             leaf.representative_from_leaf = visit_.representative_from_node * shape.node_from_proxy;
-            for (const Paint& paint : paints_)
+            for (const Painted& paint : paints_)
                 leaf.colours.push_back(
                     paint.tint.over(colour_of_proxy(colours_of(paint)).over(paint.inherited)));
             leaf.culled_detail = detail <= 1 ? detail : 0;
@@ -113,7 +113,7 @@ void LeafWalk::push_children(bool is_cut, double detail) {
             stack_.pop_back();
             continue;
         }
-        for (const Paint& paint : paints_)
+        for (const Painted& paint : paints_)
             fill_child(paint, i, is_cut, paint_stack_.emplace_back());
     }
 }
@@ -124,10 +124,10 @@ void LeafWalk::push_items() {
     for_each_edge(cut_.nodes[visit_.shape], false, [&](const CutEdge& edge) { edges.push_back(edge); });
     for (const CutEdge& edge : edges | std::views::reverse) {
         fill_child(edge, false, 0, stack_.emplace_back());
-        for (const Paint& paint : paints_) {
-            Paint& child = paint_stack_.emplace_back(paint);
+        for (const Painted& paint : paints_) {
+            Painted& child = paint_stack_.emplace_back(paint);
             child.pair = symmetry_.pair[edge.child];
-            look_through(cut_, cut_.nodes[visit_.shape], false, edge, paint, child);
+            child.descend(look_step(cut_, cut_.nodes[visit_.shape], false, edge));
         }
     }
 }
@@ -157,12 +157,13 @@ void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit
     child.faint = visit_.faint || (is_cut && detail <= 1 && cut_.nodes[visit_.shape].shadowless);
 }
 
-void LeafWalk::fill_child(const Paint& paint, std::size_t edge, bool is_cut, Paint& child) const {
+void LeafWalk::fill_child(const Painted& paint, std::size_t edge, bool is_cut, Painted& child) const {
     const NodePair& pair = symmetry_.pairs[paint.pair];
     const CutNode& colours = cut_.nodes[pair.b];
     const CutEdge& twin = followed_edges(colours, is_cut)[(is_cut ? pair.stop_edge : pair.edge)[edge]];
+    child = paint;
     child.pair = (is_cut ? pair.stop_pair : pair.edge_pair)[edge];
-    look_through(cut_, colours, is_cut, twin, paint, child);
+    child.descend(look_step(cut_, colours, is_cut, twin));
 }
 
 } // namespace graftal

@@ -56,14 +56,13 @@ class LeafWalk {
         double light_share = 1;
     };
     /// The colours that one painter gives to a visit.
-    struct Paint {
+    struct Painted : Look {
         std::uint32_t pair = 0;
-        PathTint tint;
-        Rgb inherited{0.0};
-        std::optional<MaterialId> material;
     };
 
-    const CutNode& colours_of(const Paint& paint) const { return cut_.nodes[symmetry_.pairs[paint.pair].b]; }
+    const CutNode& colours_of(const Painted& paint) const {
+        return cut_.nodes[symmetry_.pairs[paint.pair].b];
+    }
     void pop();
     void enter_ball(const CutNode& shape);
     NormalField normals() const;
@@ -73,7 +72,7 @@ class LeafWalk {
     bool is_new(const Visit& child);
     // Where they lie: to build them elsewhere and to copy them would take twice the time.
     void fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const;
-    void fill_child(const Paint& paint, std::size_t edge, bool is_cut, Paint& child) const;
+    void fill_child(const Painted& paint, std::size_t edge, bool is_cut, Painted& child) const;
 
     const CutGraph& cut_;
     const Symmetry& symmetry_;
@@ -82,10 +81,10 @@ class LeafWalk {
     const SelfShadows* self_shadows_;
     bool limit_normals_;
     std::vector<Visit> stack_;
-    std::vector<Paint> paint_stack_; ///< one a painter for each visit
-    Visit visit_;                    ///< the last one popped
-    std::vector<Ball> balls_;        ///< of the unending nodes above it, from the root on
-    std::vector<Paint> paints_;
+    std::vector<Painted> paint_stack_; ///< one a painter for each visit
+    Visit visit_;                      ///< the last one popped
+    std::vector<Ball> balls_;          ///< of the unending nodes above it, from the root on
+    std::vector<Painted> paints_;
     std::uint64_t visits_ = 0;
     Mat3 cells_from_unit_; ///< within which parts lie alike; all zero: none do
     AlikeSet met_;

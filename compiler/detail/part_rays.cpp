@@ -132,7 +132,7 @@ void PartRays::go_below(const At& at, bool cut) {
 
 void PartRays::follow(const At& parent, const CutEdge& edge, bool parent_is_cut) {
     At child = parent;
-    look_through(cut_, cut_.nodes[parent.node], parent_is_cut, edge, parent, child);
+    child.descend(look_step(cut_, cut_.nodes[parent.node], parent_is_cut, edge));
     child.node = edge.child;
     child.world_from_node = parent.world_from_node * edge.node_from_child;
     child.scale = size_below(parent.scale, edge, child.world_from_node.linear);

@@ -43,14 +43,11 @@ class PartRays {
 
   private:
     /// A node on the way.
-    struct At {
+    struct At : Look {
         NodeId node = 0;
         Affine world_from_node;
         double scale = 1; ///< norm of it
         std::uint32_t steps = 0;
-        PathTint tint;
-        Rgb inherited{0.8};
-        std::optional<MaterialId> material;
         bool faint = false;
         NodeId part = PartHit::none;
         double part_px = 0;

@@ -9,15 +9,13 @@
 namespace graftal {
 
 Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool piece_is_cut) {
-    Piece child;
+    Piece child = piece;
+    child.descend(look_step(cut, cut.nodes[piece.node], piece_is_cut, edge));
     child.node = edge.child;
     child.steps = steps_below(piece.steps, edge);
     child.world_from_node = piece.world_from_node * edge.node_from_child;
     child.scale = size_below(piece.scale, edge, child.world_from_node.linear);
-    look_through(cut, cut.nodes[piece.node], piece_is_cut, edge, piece, child);
-    child.faint = piece.faint;
-    child.light_share = piece.light_share;
-    if (cut.nodes[edge.child].primitive) child.turns = length_in_turns(edge.node_from_child.linear);
+    child.turns = cut.nodes[edge.child].primitive ? length_in_turns(edge.node_from_child.linear) : 1;
     return child;
 }
 

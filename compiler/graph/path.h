@@ -4,8 +4,11 @@
 // walks follow edges by these rules, over the graph's instances and over what is made of them (CutEdge, and
 // the tracer's edges).
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
@@ -39,6 +42,67 @@ inline PathState descend(const PathState& path, const Instance& instance, const 
             path.tint * PathTint(instance.tint), instance.material ? instance.material : path.material,
             path.levels + levels_of(instance, components)};
 }
+
+/// A colour that depends on the one that it inherits: fixed + open * (that colour). A set of parts has one
+/// from afar, weighted by area.
+struct MeanColour {
+    Rgb fixed{0.0};
+    double open = 1;
+
+    Rgb over(Rgb inherited) const { return fixed + open * inherited; }
+};
+
+/// The change of looks along an edge.
+struct LookStep {
+    PathTint tint;
+    std::optional<MaterialId> material;
+    MeanColour inherits; ///< colour that is inherited below the edge, from that above it
+};
+
+/// The one rule of looks: a material gives its colour to all below that names none, and a stand-in takes on
+/// the mean colour of the set that it stands for. `set`: that mean colour; null: the edge leads to no
+/// stand-in.
+template<typename Edge>
+LookStep look_step(const Edge& edge, const MeanColour* set, const std::vector<Material>& materials) {
+    if (edge.material) return {edge.tint, edge.material, {materials[*edge.material].rgb, 0}};
+    return {edge.tint, std::nullopt, set ? *set : MeanColour()};
+}
+
+/// The look at the end of a path from the root.
+struct Look {
+    PathTint tint;
+    Rgb inherited{0.8};                 ///< the colour that what names no material shows; at first Material's
+    std::optional<MaterialId> material; ///< whose finish it shows
+
+    /// One edge further.
+    void descend(const LookStep& step) {
+        tint = tint * step.tint;
+        inherited = step.inherits.over(inherited);
+        if (step.material) material = step.material;
+    }
+};
+
+/// The colour at the end of a path, as its upper end sees it, in single precision: fixed + open * (what the
+/// path ends on).
+struct Paint {
+    std::array<float, 3> fixed{};
+    float open = 1;
+
+    Paint() = default;
+    explicit Paint(const PathTint& tint)
+        : fixed{static_cast<float>(tint.premultiplied.r), static_cast<float>(tint.premultiplied.g),
+                static_cast<float>(tint.premultiplied.b)},
+          open(static_cast<float>(1 - tint.alpha)) {}
+
+    /// This paint behind another.
+    Paint under(const Paint& front) const {
+        Paint seen = *this;
+        for (std::size_t k = 0; k < 3; ++k)
+            seen.fixed[k] = front.fixed[k] + front.open * fixed[k];
+        seen.open = front.open * open;
+        return seen;
+    }
+};
 
 inline constexpr std::uint32_t unlimited_steps = UINT32_MAX;
 

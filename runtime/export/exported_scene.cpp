@@ -78,16 +78,9 @@ std::string in_words(const BigCount& number) {
 
 SceneLook look_through(const ExportedScene& scene, const SceneLook& look, const SceneNode& node,
                        const ScenePart& part) {
-    SceneLook after;
-    after.tint = look.tint * part.tint;
-    after.inherited = node.mean.over(look.inherited);
-    after.material = look.material;
+    SceneLook after = look;
+    after.descend(look_step(part, &node.mean, scene.materials));
     after.turns = part.turns;
-    after.colourless = look.colourless;
-    if (part.material) {
-        after.material = part.material;
-        after.inherited = scene.materials[*part.material].rgb;
-    }
     return after;
 }
 

@@ -43,10 +43,7 @@ struct ScenePart {
 };
 
 /// The look at the end of a path from the root.
-struct SceneLook {
-    PathTint tint;
-    Rgb inherited{0.8}; ///< the colour of what is not tinted
-    std::optional<MaterialId> material;
+struct SceneLook : Look {
     double turns = 1;
     bool colourless = false; ///< its colour is the one that a part on the way has
 

@@ -21,9 +21,9 @@ class OrbitSource::Stream : public PointStream {
             if (!step()) return false;
             const Rgb base = base_;
             point.place = place_;
-            point.rgb[0] = paint_.red + paint_.through * static_cast<float>(base.r);
-            point.rgb[1] = paint_.green + paint_.through * static_cast<float>(base.g);
-            point.rgb[2] = paint_.blue + paint_.through * static_cast<float>(base.b);
+            for (int k = 0; k < 3; ++k)
+                point.rgb[k] =
+                    paint_.fixed[static_cast<std::size_t>(k)] + paint_.open * static_cast<float>(base[k]);
             point.map = static_cast<std::uint32_t>(map_ + 1);
         }
         return true;
@@ -41,7 +41,7 @@ class OrbitSource::Stream : public PointStream {
             return false;
         }
         place_ = *next;
-        if (map.tint.alpha > 0) paint_ = paint_.under(paint_of(map.tint));
+        if (map.tint.alpha > 0) paint_ = paint_.under(Paint(PathTint(map.tint)));
         if (map.material) base_ = model.scene.materials[*map.material].rgb;
         return true;
     }

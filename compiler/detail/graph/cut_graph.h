@@ -27,14 +27,6 @@ struct CutEdge {
     double weight = 1;         ///< in the node's mean colour
 };
 
-/// Colour of a node's limit from afar, weighted by area: fixed + open * (the colour that it inherits).
-struct MeanColour {
-    Rgb fixed{0.0};
-    double open = 1;
-
-    Rgb over(Rgb inherited) const { return fixed + open * inherited; }
-};
-
 struct EdgeCell;
 
 /// An object as the cut sees it.
@@ -56,7 +48,7 @@ struct CutNode {
     bool widens = false;     ///< some part of it may be drawn wider than it is (least_width.h)
     Ball ball;
     Affine node_from_proxy; ///< places the unit sphere: the ellipsoid in the node's box, until fit_proxies()
-    MeanColour mean;
+    MeanColour mean;        ///< its limit's, from afar
     std::optional<MeanColour> lit;    ///< its proxy's colour in place of `mean`: see set_lit_colours()
     std::optional<MaterialId> finish; ///< the most visible one in its limit; none: that it inherits
 };
@@ -73,6 +65,12 @@ struct CutGraph {
 /// The colour of the stand-in for a node.
 inline const MeanColour& colour_of_proxy(const CutNode& node) {
     return node.lit ? *node.lit : node.mean;
+}
+
+/// The change of looks along an edge of a node. A terminal takes on the mean colour of the node that is cut.
+template<typename Edge>
+LookStep look_step(const CutGraph& cut, const CutNode& node, bool is_cut, const Edge& edge) {
+    return look_step(edge, is_cut && node.terminal ? &node.mean : nullptr, cut.materials);
 }
 
 /// Every node once, and after the nodes it leads to except those that lead back to it.

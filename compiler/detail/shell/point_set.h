@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "compiler/detail/graph/cut_graph.h"
@@ -11,18 +10,15 @@
 
 namespace graftal {
 
-/// Look of a point: fixed + open * (the colour that the node inherits); tints on the way are in it.
-struct PointPaint {
-    std::array<float, 3> fixed{};
-    float open = 1;
+/// Look of a point; the path ends on the colour that the node inherits.
+struct PointPaint : Paint {
     std::int32_t material = -1; ///< none: the one that the node inherits
 
     Rgb over(Rgb inherited) const {
         return Rgb(fixed[0], fixed[1], fixed[2]) + static_cast<double>(open) * inherited;
     }
-    /// Seen through an edge; `parent`: of a cut node that is drawn by its terminal, else null.
-    PointPaint through(const CutEdge& edge, const CutNode* parent,
-                       const std::vector<Material>& materials) const;
+    /// Seen from one edge higher.
+    PointPaint above(const LookStep& step) const;
 };
 
 /// Most cells of a shell's surface, about; one that would have more is coarser.

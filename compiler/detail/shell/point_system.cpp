@@ -176,8 +176,8 @@ bool PointSystem::start(std::uint32_t number) {
     bool fits = true;
     for_each_edge(node, state.cut, [&](const CutEdge& edge) {
         if (const auto primitive = cut_.nodes[edge.child].primitive)
-            fits = fits &&
-                   sample(number, *primitive, edge.node_from_child, paint_through(PointPaint(), edge, state));
+            fits = fits && sample(number, *primitive, edge.node_from_child,
+                                  painted_ ? PointPaint().above(step_from(state, edge)) : PointPaint());
     });
     for (const CutEdge& edge : followed_edges(node, state.cut)) {
         if (cut_.nodes[edge.child].primitive) continue;
@@ -222,14 +222,11 @@ PointPaint PointSystem::mean_of(const CutNode& node) {
 PointPaint PointSystem::ended(const CutNode& node) const {
     if (!node.terminal || node.stop_edges.empty()) return mean_of(node);
     const CutEdge& edge = node.stop_edges.front();
-    return mean_of(cut_.nodes[edge.child]).through(edge, &node, cut_.materials);
+    return mean_of(cut_.nodes[edge.child]).above(look_step(cut_, node, true, edge));
 }
 
-PointPaint PointSystem::paint_through(const PointPaint& paint, const CutEdge& edge,
-                                      const State& parent) const {
-    if (!painted_) return paint;
-    const CutNode& node = node_of(parent);
-    return paint.through(edge, parent.cut && node.terminal ? &node : nullptr, cut_.materials);
+LookStep PointSystem::step_from(const State& parent, const CutEdge& edge) const {
+    return look_step(cut_, node_of(parent), parent.cut, edge);
 }
 
 bool PointSystem::sample(std::uint32_t number, const Primitive& primitive, const Affine& node_from_primitive,
@@ -264,7 +261,7 @@ bool PointSystem::add_seed(std::uint32_t number) {
     PointPaint paint = ended(cut_.nodes[here]);
     if (painted_)
         for (std::size_t i = way.size(); i-- > 0;)
-            paint = paint.through(*way[i], nullptr, cut_.materials);
+            paint = paint.above(look_step(*way[i], nullptr, cut_.materials));
     return add(number, point_of(node_from_here(cut_.nodes[here].ball.centre) - state.middle), paint);
 }
 
@@ -308,12 +305,13 @@ bool PointSystem::move(const State& child, std::size_t first, std::size_t last, 
     const State& parent = states_[use.parent];
     const Mat3& linear = use.edge->node_from_child.linear;
     const Vec3 offset = use.edge->node_from_child(child.middle) - parent.middle;
+    const LookStep step = step_from(parent, *use.edge);
     work_ += last - first;
     if (work_ > most_work_) return false;
     for (std::size_t i = first; i < last; ++i) {
         const Point p = child.points[i]; // a copy: the child may be the parent
         const Point moved = point_of(linear * Vec3(p[0], p[1], p[2]) + offset);
-        const PointPaint paint = painted_ ? paint_through(child.paints[i], *use.edge, parent) : PointPaint();
+        const PointPaint paint = painted_ ? child.paints[i].above(step) : PointPaint();
         if (!add(use.parent, moved, paint)) return false;
     }
     return true;

@@ -94,7 +94,7 @@ class PointSystem {
     /// The stand-in where parts end: the terminal, if there is one, by its own material.
     PointPaint ended(const CutNode& node) const;
 
-    PointPaint paint_through(const PointPaint& paint, const CutEdge& edge, const State& parent) const;
+    LookStep step_from(const State& parent, const CutEdge& edge) const;
 
     bool sample(std::uint32_t number, const Primitive& primitive, const Affine& node_from_primitive,
                 const PointPaint& paint);

@@ -175,7 +175,7 @@ class ModelBuilder {
         edge.child = source.child[shape.index()];
         edge.to_primitive = true;
         TraceLook look;
-        look.material = source.materials[colour].value_or(TraceLook::none);
+        look.material = source.materials[colour];
         run.looks.push_back({shape, colour, static_cast<std::uint32_t>(model_.edges.size())});
         add(edge, look);
     }
@@ -193,7 +193,7 @@ class ModelBuilder {
             edge.similarity = part.edge.similarity;
             TraceLook look;
             look.tint = part.edge.tint;
-            look.material = part.edge.material.value_or(TraceLook::none);
+            look.material = part.edge.material;
             edge.turns = part.turns;
             const Affine& graph_from_child = model_.graph_from_frame[edge.child];
             set_map(edge, frame_from_graph * part.edge.node_from_child * graph_from_child,

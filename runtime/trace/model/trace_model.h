@@ -63,7 +63,7 @@ struct alignas(64) TraceEdge {
 /// Data of an edge for the look of a hit below it, in one line of the processor's caches.
 struct alignas(64) TraceLook {
     PathTint tint;
-    std::uint32_t material = none;
+    std::optional<MaterialId> material;
     /// The last node on the way through the edge that is no primitive, as the graph numbers it; none: the one
     /// before.
     std::uint32_t node = none;
@@ -78,6 +78,7 @@ struct alignas(64) TraceLook {
 
     static constexpr std::uint32_t none = UINT32_MAX;
 };
+static_assert(sizeof(TraceLook) == 64);
 
 /// The parts some levels below a node, as if they were its own: boxes are faster to test than frames to
 /// enter. They may take the place of the node's edges where none of the nodes passed over would be cut or

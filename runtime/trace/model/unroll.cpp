@@ -263,7 +263,7 @@ class Unroller {
         const TraceLook& second = model_.looks[last & ~from_cut];
         TraceLook look = second;
         look.tint = first.tint * second.tint;
-        if (second.material == TraceLook::none) look.material = first.material;
+        if (!second.material) look.material = first.material;
         if (second.node == TraceLook::none) look.node = first.node;
         look.levels = first.levels + second.levels;
         look.before = before;

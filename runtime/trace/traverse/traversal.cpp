@@ -171,8 +171,7 @@ const TraceMesh& Traversal::shell_of(const Frame& frame) {
 }
 
 std::optional<MaterialId> Traversal::material_of(std::uint32_t edge) const {
-    const std::uint32_t material = model_.looks[edge & ~from_cut].material;
-    return material != TraceLook::none ? std::optional<MaterialId>(material) : std::nullopt;
+    return model_.looks[edge & ~from_cut].material;
 }
 
 const Texture::Texel& Traversal::texel(MaterialId material, std::uint32_t edge, double turns,
@@ -222,21 +221,16 @@ double Traversal::light_share_at_best() const {
     return model_.self_shadows().share(model_.layers.source[number], detail * error_px);
 }
 
-/// descend() (detail/piece.h) for one step: several edges at once where an unrolling knows their result.
+/// One step further: several edges at once where an unrolling knows their result.
 void Traversal::look_along(std::uint32_t step, WayLook& look, SurfaceHit& hit) const {
     const TraceLook& edge = model_.looks[step & ~from_cut];
     if (!edge.as_one) {
         look_along(edge.before, look, hit);
         return look_along(edge.last, look, hit);
     }
-    if (step & from_cut && look.has_mean)
-        look.inherited = model_.source(look.parent).mean.over(look.inherited);
-    look.tint = look.tint * edge.tint;
-    if (edge.material != TraceLook::none) {
-        look.material = edge.material;
-        hit.material = &model_.prepared.cut.materials[edge.material];
-        look.inherited = hit.material->rgb;
-    }
+    const bool at_terminal = step & from_cut && look.has_mean;
+    look.descend(look_step(edge, at_terminal ? &model_.source(look.parent).mean : nullptr,
+                           model_.prepared.cut.materials));
     look.parent = edge.child;
     look.has_mean = edge.child_has_mean;
     if (edge.node != TraceLook::none) hit.node = edge.node;
@@ -249,9 +243,10 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
     hit.material = &plain;
     hit.node = SurfaceHit::no_node;
     hit.levels = 0;
-    WayLook look{.inherited = plain.rgb};
+    WayLook look;
     for (const std::uint32_t step : way_)
         look_along(step, look, hit);
+    if (look.material) hit.material = &materials[*look.material];
     const PathTint& tint = look.tint;
     Rgb inherited = look.inherited;
     const std::optional<MaterialId> material = look.material;

@@ -241,10 +241,7 @@ class Traversal final : public Surfaces {
     /// Appends an edge to the path; of an unrolling's edge those that it stands for.
     void append_to_path(std::uint32_t edge);
     /// The look that a way has given to its end.
-    struct WayLook {
-        PathTint tint = {};
-        Rgb inherited;
-        std::optional<MaterialId> material = {};
+    struct WayLook : Look {
         std::uint32_t parent = 0; ///< if it has_mean
         bool has_mean = false;
     };

@@ -62,7 +62,7 @@ bool Weights::is_cut(const PieceKind& kind) const {
 
 PieceKind Weights::normalised(PieceKind kind) const {
     const CutNode& node = cut_.nodes[kind.node];
-    if (!node.unending) kind.steps = unlimited_steps;
+    kind = without_idle_levels(cut_, kind);
     if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return kind;
     // To the nearest, so that what is counted level by level does not drift.
     if (grain_ > 1)

@@ -89,10 +89,11 @@ struct Paint {
     float open = 1;
 
     Paint() = default;
-    explicit Paint(const PathTint& tint)
-        : fixed{static_cast<float>(tint.premultiplied.r), static_cast<float>(tint.premultiplied.g),
-                static_cast<float>(tint.premultiplied.b)},
-          open(static_cast<float>(1 - tint.alpha)) {}
+    explicit Paint(const MeanColour& colour)
+        : fixed{static_cast<float>(colour.fixed.r), static_cast<float>(colour.fixed.g),
+                static_cast<float>(colour.fixed.b)},
+          open(static_cast<float>(colour.open)) {}
+    explicit Paint(const PathTint& tint) : Paint(MeanColour{tint.premultiplied, 1 - tint.alpha}) {}
 
     /// This paint behind another.
     Paint under(const Paint& front) const {

@@ -33,7 +33,7 @@ SceneLimits scene_limits(std::uint64_t memory_bytes) {
             static_cast<std::size_t>(memory_bytes / bytes_of_part)};
 }
 
-void note_what_is_missing(const ExportedScene& scene, Span model, Diagnostics& diagnostics) {
+void note_what_is_missing(const UnfoldedScene& scene, Span model, Diagnostics& diagnostics) {
     if (scene.left_out_planes)
         diagnostics.note(model, "planes have no end, so that graftal leaves them out of the file");
     if (scene.thickened > 0)
@@ -64,7 +64,7 @@ class Exporter {
         if (!prepared) return attempt;
         const Graph& graph = viewed->model->graph;
         const Span root = attempt.root = graph.objects[graph.root].span;
-        std::optional<ExportedScene> scene = build_scene(
+        std::optional<UnfoldedScene> scene = build_scene(
             *prepared, viewed->view, resolved(stages.detail, *viewed), format_.meshes, root,
             scene_limits(options_.file.memory_bytes), session_.control(), compilation.diagnostics);
         attempt.too_large = !scene;

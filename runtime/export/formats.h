@@ -9,8 +9,8 @@
 
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/status.h"
-#include "runtime/export/build_scene.h"
-#include "runtime/export/exported_scene.h"
+#include "compiler/unfolded/build_scene.h"
+#include "compiler/unfolded/scene.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/image_files/texture_store.h"
 
@@ -34,7 +34,7 @@ struct ExportOptions {
 
 /// The work for a format: a scene, and where to write it.
 struct ExportJob {
-    ExportedScene& scene;
+    UnfoldedScene& scene;
     const View& view;
     const ExportOptions& options;
     Span model; ///< for diagnostics

@@ -9,7 +9,7 @@ namespace graftal {
 namespace {
 
 /// Triangles below each node. A node with none is no mesh.
-std::vector<double> triangles_below(const ExportedScene& scene) {
+std::vector<double> triangles_below(const UnfoldedScene& scene) {
     std::vector<double> triangles(scene.nodes.size(), 0);
     for (const SceneId id : scene.masters_first) {
         const SceneNode& node = scene.nodes[id];
@@ -26,7 +26,7 @@ std::vector<double> triangles_below(const ExportedScene& scene) {
 
 } // namespace
 
-MeshGroups group_meshes(const ExportedScene& scene, const GroupOptions& options) {
+MeshGroups group_meshes(const UnfoldedScene& scene, const GroupOptions& options) {
     const std::vector<double> triangles = triangles_below(scene);
     std::vector<std::size_t> rank(scene.nodes.size()); // a node has a larger rank than those that it holds
     for (std::size_t i = 0; i < scene.masters_first.size(); ++i)
@@ -87,7 +87,7 @@ MeshGroups group_meshes(const ExportedScene& scene, const GroupOptions& options)
     return groups;
 }
 
-std::vector<MeshPlace> places_of(const ExportedScene& scene, const MeshGroups& groups) {
+std::vector<MeshPlace> places_of(const UnfoldedScene& scene, const MeshGroups& groups) {
     std::vector<MeshPlace> places, waiting{{scene.root, {}}};
     while (!waiting.empty()) {
         const MeshPlace at = waiting.back();

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "runtime/export/exported_scene.h"
+#include "compiler/unfolded/scene.h"
 
 namespace graftal {
 
@@ -23,7 +23,7 @@ struct MeshGroups {
 
 /// Opens the largest meshes first, as long as the nodes suffice; of all states on the way the one that costs
 /// least. Requires resolved looks.
-MeshGroups group_meshes(const ExportedScene& scene, const GroupOptions& options);
+MeshGroups group_meshes(const UnfoldedScene& scene, const GroupOptions& options);
 
 /// Where a mesh lies in the world.
 struct MeshPlace {
@@ -32,6 +32,6 @@ struct MeshPlace {
 };
 
 /// All of them, in the order of the parts.
-std::vector<MeshPlace> places_of(const ExportedScene& scene, const MeshGroups& groups);
+std::vector<MeshPlace> places_of(const UnfoldedScene& scene, const MeshGroups& groups);
 
 } // namespace graftal

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/export/exported_scene.h"
+#include "compiler/unfolded/scene.h"
 
 namespace graftal {
 
@@ -22,7 +22,7 @@ struct ShapeMesh {
 /// The meshes of shapes, each made when it is first asked for.
 class ShapeMeshes {
   public:
-    explicit ShapeMeshes(const ExportedScene& scene) : scene_(scene) {}
+    explicit ShapeMeshes(const UnfoldedScene& scene) : scene_(scene) {}
 
     /// The mesh that the look shows: with places on the picture, if its material has one.
     const ShapeMesh& of(std::uint32_t shape, const SceneLook& look);
@@ -38,7 +38,7 @@ class ShapeMeshes {
         auto operator<=>(const Key&) const = default;
     };
 
-    const ExportedScene& scene_;
+    const UnfoldedScene& scene_;
     std::map<Key, ShapeMesh> known_;
 };
 

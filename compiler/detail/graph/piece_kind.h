@@ -7,9 +7,10 @@
 
 namespace graftal {
 
-/// A node with the levels it has left and the detail of a unit of its frame: what is baked as one mesh.
-/// Details are counted in steps of 2^(1/256). A unit and not the node's diameter: where nothing is scaled on
-/// the way down, as in most L-systems, nothing is rounded then, and a node makes one kind.
+/// A node with the levels it has left and the detail of a unit of its frame: what is unfolded once, or baked
+/// as one mesh. Details are counted in steps of 2^(1/256), or as whoever unfolds says. A unit and not the
+/// node's diameter: where nothing is scaled on the way down, as in most L-systems, nothing is rounded then,
+/// and a node makes one kind.
 struct PieceKind {
     NodeId node = 0;
     std::uint32_t steps = unlimited_steps;
@@ -29,6 +30,13 @@ struct PieceKind {
 struct PieceKindHash {
     std::size_t operator()(const PieceKind& kind) const;
 };
+
+/// The kind of all that differ from this one by nothing but levels, where the node is ending: it has no use
+/// for them.
+inline PieceKind without_idle_levels(const CutGraph& cut, PieceKind kind) {
+    if (!cut.nodes[kind.node].unending) kind.steps = unlimited_steps;
+    return kind;
+}
 
 /// The detail from which down a cullable node is cut, 1 at least: more if its terminal takes its place before
 /// it is culled. `error_px`: as Projection::error_px().

@@ -51,7 +51,7 @@ bool PointSystem::run(NodeId root, std::uint32_t steps, double cell, const Coars
     if (!add_states({root, steps})) return false;
     for (State& state : states_) {
         state.cell = cell / state.stretch;
-        state.middle = cut_.nodes[state.key.first].ball.centre;
+        state.middle = cut_.nodes[state.key.node].ball.centre;
         if (const auto found = coarse.find(state.key); found != coarse.end())
             state.inside = found->second.inside;
     }
@@ -68,8 +68,8 @@ bool PointSystem::add_large_parts() {
     };
     const double cell = root().cell;
     Part whole;
-    whole.black.steps = whole.white.steps = root().key.second;
-    whole.black.node = whole.white.node = root().key.first;
+    whole.black.steps = whole.white.steps = root().key.steps;
+    whole.black.node = whole.white.node = root().key.node;
     whole.black.inherited = Rgb(0.0);
     whole.white.inherited = Rgb(1.0);
     whole.size = std::numeric_limits<double>::infinity();
@@ -118,12 +118,11 @@ double PointSystem::stretch_of(const CutEdge& edge) const {
     return cut_.contractive ? edge.stretch : edge.volume_stretch;
 }
 
-std::optional<std::uint32_t> PointSystem::state_number(StateKey key) {
-    if (!cut_.nodes[key.first].unending) key.second = unlimited_steps;
+std::optional<std::uint32_t> PointSystem::state_number(PieceKind key) {
+    key = without_idle_levels(cut_, key);
     const auto next = static_cast<std::uint32_t>(states_.size());
-    const std::uint32_t number =
-        number_of_.find_or_add(mixed(mixed(0, key.first), key.second), next,
-                               [&](std::uint32_t other) { return states_[other].key == key; });
+    const std::uint32_t number = number_of_.find_or_add(
+        PieceKindHash()(key), next, [&](std::uint32_t other) { return states_[other].key == key; });
     if (number == next) {
         if (states_.size() >= most_states) return std::nullopt;
         work_ += moves_a_state;
@@ -133,7 +132,7 @@ std::optional<std::uint32_t> PointSystem::state_number(StateKey key) {
     return number;
 }
 
-bool PointSystem::add_states(StateKey root) {
+bool PointSystem::add_states(const PieceKind& root) {
     using Reached = std::pair<double, std::uint32_t>; // a stretch, and a state
     Walk<Reached, std::less<>> walk;
     const auto first = state_number(root);
@@ -145,7 +144,7 @@ bool PointSystem::add_states(StateKey root) {
         if (stretch < states_[number].stretch) continue;
         const CutNode& node = node_of(states_[number]);
         if (node.unbounded) return false;
-        const std::uint32_t steps = states_[number].key.second;
+        const std::uint32_t steps = states_[number].key.steps;
         const double diameter = 2 * node.ball.radius * stretch;
         states_[number].tiny = diameter <= cell_;
         states_[number].cut = node.unending && steps == 0;
@@ -182,21 +181,18 @@ bool PointSystem::start(std::uint32_t number) {
     for (const CutEdge& edge : followed_edges(node, state.cut)) {
         if (cut_.nodes[edge.child].primitive) continue;
         work_ += moves_a_relaxation;
-        states_[*state_number({edge.child, steps_below(state.key.second, edge)})].uses.push_back(
+        states_[*state_number({edge.child, steps_below(state.key.steps, edge)})].uses.push_back(
             {number, &edge});
     }
     if (!fits || work_ > most_work_) return false;
-    if (!node.solid && state.key.second == unlimited_steps) return add_seed(number);
+    if (!node.solid && state.key.steps == unlimited_steps) return add_seed(number);
     return true;
 }
 
 PointPaint PointSystem::paint_of(const Piece& black, const Piece& white) const {
-    PointPaint paint;
-    if (!painted_) return paint;
+    if (!painted_) return {};
     const Rgb fixed = black.tint.over(black.inherited), whole = white.tint.over(white.inherited);
-    for (int k = 0; k < 3; ++k)
-        paint.fixed[static_cast<std::size_t>(k)] = static_cast<float>(fixed[k]);
-    paint.open = static_cast<float>(whole.x - fixed.x);
+    PointPaint paint{Paint(MeanColour{fixed, whole.x - fixed.x})};
     if (black.material) paint.material = static_cast<std::int32_t>(*black.material);
     return paint;
 }
@@ -212,11 +208,7 @@ bool PointSystem::start_from(std::uint32_t number, const CoarseStates& coarse) {
 }
 
 PointPaint PointSystem::mean_of(const CutNode& node) {
-    PointPaint paint;
-    for (int k = 0; k < 3; ++k)
-        paint.fixed[static_cast<std::size_t>(k)] = static_cast<float>(node.mean.fixed[k]);
-    paint.open = static_cast<float>(node.mean.open);
-    return paint;
+    return {Paint(node.mean)};
 }
 
 PointPaint PointSystem::ended(const CutNode& node) const {
@@ -246,7 +238,7 @@ bool PointSystem::add_seed(std::uint32_t number) {
     const double radius = node_of(state).ball.radius;
     Affine node_from_here;
     std::vector<const CutEdge*> way;
-    NodeId here = state.key.first;
+    NodeId here = state.key.node;
     for (int i = 0; i < most_seed_steps; ++i) {
         if (norm(node_from_here.linear) * cut_.nodes[here].ball.radius <= seed_accuracy * radius) break;
         const CutEdge* next = nullptr;

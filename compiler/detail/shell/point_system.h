@@ -3,10 +3,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
-#include <utility>
+#include <unordered_map>
 #include <vector>
 
 #include "compiler/detail/piece.h"
@@ -21,7 +20,6 @@ namespace graftal {
 class PointSystem {
   public:
     using Point = std::array<float, 3>;
-    using StateKey = std::pair<NodeId, std::uint32_t>;
 
     /// The part of a run on a coarse grid that the next run uses.
     struct Coarse {
@@ -29,11 +27,11 @@ class PointSystem {
         std::vector<Point> points; ///< points that are not inside
         std::vector<PointPaint> paints;
     };
-    using CoarseStates = std::map<StateKey, Coarse>;
+    using CoarseStates = std::unordered_map<PieceKind, Coarse, PieceKindHash>;
 
     /// A node with the levels that it has left, and its points.
     struct State {
-        StateKey key;
+        PieceKind key;      ///< of no detail
         double stretch = 0; ///< largest product of stretches on a way from the root
         bool tiny = false;  ///< no larger than a cell: a point is enough
         bool cut = false;
@@ -71,14 +69,14 @@ class PointSystem {
     CoarseStates take_coarse();
 
   private:
-    const CutNode& node_of(const State& state) const { return cut_.nodes[state.key.first]; }
+    const CutNode& node_of(const State& state) const { return cut_.nodes[state.key.node]; }
     double stretch_of(const CutEdge& edge) const;
 
-    std::optional<std::uint32_t> state_number(StateKey key);
+    std::optional<std::uint32_t> state_number(PieceKind key);
 
     /// Largest first, as shortest ways are found (E. Dijkstra 1959); what is met again by a longer way is
     /// done again.
-    bool add_states(StateKey root);
+    bool add_states(const PieceKind& root);
 
     /// The points that a state has of its own, and what it hands on to whom.
     bool start(std::uint32_t number);

@@ -24,7 +24,7 @@ MeshSize mesh_size(const SceneShape& shape, bool cornered) {
     return {cornered || mesh.normals.empty() ? 3 * triangles : mesh.vertices.size(), triangles};
 }
 
-bool has_pictures(const ExportedScene& scene) {
+bool has_pictures(const UnfoldedScene& scene) {
     return std::ranges::any_of(scene.materials,
                                [](const Material& material) { return !material.texture.empty(); });
 }

@@ -18,7 +18,7 @@ struct MeshSize {
 MeshSize mesh_size(const SceneShape& shape, bool cornered);
 
 /// Whether some material of the model has a picture, so that triangles may have their own corners.
-bool has_pictures(const ExportedScene& scene);
+bool has_pictures(const UnfoldedScene& scene);
 
 /// Refuses a file of more bytes than allowed, or of more vertices than its numbers count. The error states
 /// how large it would be. `bytes`: of a leaf of each shape.

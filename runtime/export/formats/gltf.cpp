@@ -9,12 +9,12 @@
 
 #include <tiny_gltf.h>
 
+#include "compiler/unfolded/looks.h"
 #include "runtime/export/formats/flat_files.h"
 #include "runtime/export/formats/group_mesh.h"
 #include "runtime/export/formats/pbr.h"
 #include "runtime/export/formats/picture_copies.h"
 #include "runtime/export/formats/rigid_parts.h"
-#include "runtime/export/looks.h"
 
 namespace graftal {
 
@@ -49,7 +49,7 @@ class FileStream : public std::streambuf {
 
 class GltfWriter {
   public:
-    GltfWriter(const ExportJob& job, const ExportedScene& scene)
+    GltfWriter(const ExportJob& job, const UnfoldedScene& scene)
         : job_(job), scene_(scene), meshes_(scene), pictures_(job) {
         model_.asset.version = "2.0";
         model_.asset.generator = job.options.metadata.software;
@@ -471,7 +471,7 @@ class GltfWriter {
     }
 
     const ExportJob& job_;
-    const ExportedScene& scene_;
+    const UnfoldedScene& scene_;
     ShapeMeshes meshes_;
     PictureCopies pictures_;
     tinygltf::Model model_;
@@ -484,7 +484,7 @@ class GltfWriter {
 Status write_gltf_file(const ExportJob& job, ExportReport& report, bool binary) {
     if (refuse_range(job, job.options.unit_mm.value_or(1000) / 1000)) return {};
     constexpr std::size_t most_looks = 1'000'000;
-    const std::optional<ExportedScene> scene =
+    const std::optional<UnfoldedScene> scene =
         resolve_looks(job.scene, {most_looks}, job.model, job.diagnostics);
     job.too_large = !scene;
     if (!scene) return {};

@@ -18,11 +18,11 @@ std::array<float, 3> floats(Vec3 v) {
 
 } // namespace
 
-Rgb plain_colour(const ExportedScene& scene, const std::optional<MaterialId>& material) {
+Rgb plain_colour(const UnfoldedScene& scene, const std::optional<MaterialId>& material) {
     return material ? scene.materials[*material].rgb : SceneLook().inherited;
 }
 
-std::vector<GroupSurface> surfaces_of(const ExportedScene& scene, SceneId node, ShapeMeshes& meshes,
+std::vector<GroupSurface> surfaces_of(const UnfoldedScene& scene, SceneId node, ShapeMeshes& meshes,
                                       ColoursOf colours) {
     std::vector<GroupSurface> surfaces;
     std::map<std::tuple<std::int64_t, bool, std::array<std::uint8_t, 3>>, std::size_t> by_key;

@@ -23,10 +23,10 @@ enum class ColoursOf { vertices, surfaces };
 
 /// The leaves below a node as surfaces, in the node's frame: with colours by vertex, or each in one colour
 /// (to 8 bits), its first. Corners that rounding brings together make no triangle. Requires resolved looks.
-std::vector<GroupSurface> surfaces_of(const ExportedScene& scene, SceneId node, ShapeMeshes& meshes,
+std::vector<GroupSurface> surfaces_of(const UnfoldedScene& scene, SceneId node, ShapeMeshes& meshes,
                                       ColoursOf colours = ColoursOf::vertices);
 
 /// The colour of what has this material, or none.
-Rgb plain_colour(const ExportedScene& scene, const std::optional<MaterialId>& material);
+Rgb plain_colour(const UnfoldedScene& scene, const std::optional<MaterialId>& material);
 
 } // namespace graftal

@@ -16,7 +16,7 @@ namespace {
 
 /// Whether the model is nothing but lines, and balls where they meet, whose axes lie in one plane: where
 /// lines are few, they may be thick.
-bool lies_in_plane(const ExportedScene& scene, int axis) {
+bool lies_in_plane(const UnfoldedScene& scene, int axis) {
     constexpr double flat = 1e-9;
     constexpr std::size_t most_leaves = 1'000'000;
     const double height = scene.bounds.centre()[axis];

@@ -19,7 +19,7 @@ constexpr double most_renderer_places = 2e6;
 
 std::optional<RendererScene> RendererScene::make(const ExportJob& job, double bytes_of_triangle,
                                                  double bytes_of_place) {
-    std::optional<ExportedScene> resolved =
+    std::optional<UnfoldedScene> resolved =
         resolve_looks(job.scene, {most_renderer_nodes}, job.model, job.diagnostics);
     job.too_large = !resolved;
     if (!resolved) return std::nullopt;
@@ -89,7 +89,7 @@ double shorter_angle_deg(const View& view) {
     return 2 * std::atan(std::min(across, up)) / degree;
 }
 
-double lamp_at_model(const ExportedScene& scene, const Light& light) {
+double lamp_at_model(const UnfoldedScene& scene, const Light& light) {
     const Vec3 middle = scene.bounds.empty() ? Vec3(0.0) : scene.bounds.centre();
     const Vec3 away = light.location - middle;
     return glm::dot(away, away);

@@ -2,9 +2,9 @@
 
 // Scenes for renderers with one level of instances: a list of meshes, and where they lie.
 
+#include "compiler/unfolded/looks.h"
 #include "runtime/export/formats/group_mesh.h"
 #include "runtime/export/formats/picture_copies.h"
-#include "runtime/export/looks.h"
 
 namespace graftal {
 
@@ -26,7 +26,7 @@ class RendererScene {
     static std::optional<RendererScene> make(const ExportJob& job, double bytes_of_triangle,
                                              double bytes_of_place);
 
-    const ExportedScene& scene() const { return scene_; }
+    const UnfoldedScene& scene() const { return scene_; }
     const MeshGroups& groups() const { return groups_; }
     const std::vector<MeshPlace>& places() const { return places_; }
     const std::vector<RendererLook>& looks() const { return looks_; }
@@ -38,7 +38,7 @@ class RendererScene {
     std::string summary() const;
 
   private:
-    ExportedScene scene_;
+    UnfoldedScene scene_;
     MeshGroups groups_;
     std::vector<MeshPlace> places_;
     std::vector<RendererLook> looks_;
@@ -49,6 +49,6 @@ class RendererScene {
 double shorter_angle_deg(const View& view);
 
 /// Units of light of a lamp that is as bright at the model as POV-Ray's, which do not fade.
-double lamp_at_model(const ExportedScene& scene, const Light& light);
+double lamp_at_model(const UnfoldedScene& scene, const Light& light);
 
 } // namespace graftal

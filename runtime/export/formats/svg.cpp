@@ -5,10 +5,10 @@
 #include <map>
 #include <numbers>
 
+#include "compiler/unfolded/looks.h"
 #include "runtime/export/formats/flat_files.h"
 #include "runtime/export/formats/flat_shapes.h"
 #include "runtime/export/formats/plotter.h"
-#include "runtime/export/looks.h"
 
 namespace graftal {
 
@@ -69,7 +69,7 @@ struct SeenNode {
 
 class SvgWriter {
   public:
-    SvgWriter(const ExportedScene& scene, OutputFile& file) : scene_(scene), file_(file) {}
+    SvgWriter(const UnfoldedScene& scene, OutputFile& file) : scene_(scene), file_(file) {}
 
     /// False if there are too many.
     bool find_nodes(const PlanePage& page) {
@@ -197,7 +197,7 @@ class SvgWriter {
         return text;
     }
 
-    const ExportedScene& scene_;
+    const UnfoldedScene& scene_;
     OutputFile& file_;
     std::vector<SeenNode> nodes_;
     std::map<SeenKey, std::size_t> number_of_;
@@ -209,7 +209,7 @@ class SvgWriter {
 Status write_nested(const ExportJob& job, ExportReport& report) {
     const std::optional<PlanePage> page = page_of(job, std::nullopt);
     if (!page) return {};
-    const std::optional<ExportedScene> scene =
+    const std::optional<UnfoldedScene> scene =
         resolve_looks(job.scene, {most_svg_nodes}, job.model, job.diagnostics);
     job.too_large = !scene;
     if (!scene) return {};

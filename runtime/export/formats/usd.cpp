@@ -8,13 +8,13 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/support/number.h"
+#include "compiler/unfolded/levels.h"
+#include "compiler/unfolded/looks.h"
 #include "runtime/export/formats/flat_files.h"
 #include "runtime/export/formats/group_mesh.h"
 #include "runtime/export/formats/pbr.h"
 #include "runtime/export/formats/picture_copies.h"
 #include "runtime/export/formats/rigid_parts.h"
-#include "runtime/export/levels.h"
-#include "runtime/export/looks.h"
 
 namespace graftal {
 
@@ -59,7 +59,7 @@ std::string matrix_text(const Affine& map) {
 
 class UsdWriter {
   public:
-    UsdWriter(const ExportJob& job, const ExportedScene& scene, OutputFile& file)
+    UsdWriter(const ExportJob& job, const UnfoldedScene& scene, OutputFile& file)
         : job_(job), scene_(scene), file_(file), meshes_(scene), pictures_(job) {}
 
     Status write() {
@@ -356,7 +356,7 @@ class UsdWriter {
     }
 
     const ExportJob& job_;
-    const ExportedScene& scene_;
+    const UnfoldedScene& scene_;
     OutputFile& file_;
     ShapeMeshes meshes_;
     PictureCopies pictures_;
@@ -364,7 +364,7 @@ class UsdWriter {
     std::size_t prototypes_ = 0, instances_ = 0, points_ = 0;
 };
 
-bool refuse_usd_size(const ExportJob& job, const ExportedScene& scene) {
+bool refuse_usd_size(const ExportJob& job, const UnfoldedScene& scene) {
     std::uint64_t bytes = 0;
     for (const SceneId id : scene.masters_first) {
         const std::size_t parts = scene.nodes[id].parts.size();
@@ -382,7 +382,7 @@ Status write_usd(const ExportJob& job, ExportReport& report) {
     if (refuse_range(job, 1)) return {};
     // Tints shall not make the file much larger than the graph is.
     const std::uint64_t wanted = std::max(fewest_wanted_parts, most_times_parts * count(job.scene).parts);
-    std::optional<ExportedScene> scene =
+    std::optional<UnfoldedScene> scene =
         resolve_looks(job.scene, {most_usd_looks, wanted, TintsOn::instances}, job.model, job.diagnostics);
     job.too_large = !scene;
     if (!scene) return {};

@@ -88,11 +88,11 @@ bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRan
 MeshStore::MeshStore(const PreparedCut& prepared, std::uint64_t most_shell_work)
     : prepared_(prepared), most_shell_work_(most_shell_work) {}
 
-MeshStore::Key MeshStore::key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
-                              double detail_per_unit) const {
+PieceKind MeshStore::key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
+                         double detail_per_unit) const {
     // From the units of the frame to those of the graph.
-    return {node, prepared_.cut.nodes[node].unending ? steps : unlimited_steps,
-            steps_of(detail_per_unit / graph_from_frame.linear[0][0])};
+    return without_idle_levels(prepared_.cut,
+                               {node, steps, steps_of(detail_per_unit / graph_from_frame.linear[0][0])});
 }
 
 void MeshStore::note(double seen) {
@@ -101,7 +101,7 @@ void MeshStore::note(double seen) {
     }
 }
 
-const TraceMesh& MeshStore::mesh(const Key& key, const Affine& graph_from_frame) {
+const TraceMesh& MeshStore::mesh(const PieceKind& key, const Affine& graph_from_frame) {
     std::unique_lock lock(mutex_);
     Entry& entry = meshes_[key];
     lock.unlock();
@@ -115,13 +115,13 @@ const TraceMesh& MeshStore::mesh(const Key& key, const Affine& graph_from_frame)
     return *entry.mesh;
 }
 
-std::unique_ptr<TraceMesh> MeshStore::bake_shell(const Key& key, const Affine& graph_from_frame) const {
+std::unique_ptr<TraceMesh> MeshStore::bake_shell(const PieceKind& key, const Affine& graph_from_frame) const {
     BakeRequest request;
     request.shell = true;
     request.shells = prepared_.shells.get();
     request.representative = key.node;
     request.steps = key.steps;
-    request.detail_per_unit = value_of(key.detail);
+    request.detail_per_unit = value_of(key.unit_step);
     request.most_shell_work = most_shell_work_;
     request.painters = {{0, Rgb(0.0)}, {0, Rgb(1.0)}};
     constexpr double moves_a_triangle = WorkRates::shell_points / WorkRates::mesh_triangles;

@@ -3,12 +3,13 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
+#include "compiler/detail/graph/piece_kind.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/primitives/intersect.h"
 #include "runtime/trace/model/box_tree.h"
@@ -57,16 +58,10 @@ class MeshStore {
     /// Keeps a reference. `most_shell_work`: points moved for one shell; it gets coarser by that.
     MeshStore(const PreparedCut& prepared, std::uint64_t most_shell_work);
 
-    /// The views of a node that one mesh serves.
-    struct Key {
-        NodeId node = 0;
-        std::uint32_t steps = 0;
-        int detail = 0; ///< in steps, on a logarithmic scale
-        auto operator<=>(const Key&) const = default;
-    };
-
-    /// The shell of a crowded node where a unit of its frame has this detail (Projection).
-    Key key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps, double detail_per_unit) const;
+    /// The key of the shell of a crowded node where a unit of its frame has this detail (Projection). Keys
+    /// tell half octaves apart.
+    PieceKind key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,
+                  double detail_per_unit) const;
     /// Notes a shell that was seen with cells of this detail there (Projection).
     void note(double cell_detail);
 
@@ -81,7 +76,7 @@ class MeshStore {
 
     /// The node in its frame. The same node, with as many steps, is always asked for in the same frame. The
     /// reference stays.
-    const TraceMesh& mesh(const Key& key, const Affine& graph_from_frame);
+    const TraceMesh& mesh(const PieceKind& key, const Affine& graph_from_frame);
 
   private:
     struct Entry {
@@ -90,13 +85,13 @@ class MeshStore {
         std::unique_ptr<TraceMesh> mesh;
     };
 
-    std::unique_ptr<TraceMesh> bake_shell(const Key& key, const Affine& graph_from_frame) const;
+    std::unique_ptr<TraceMesh> bake_shell(const PieceKind& key, const Affine& graph_from_frame) const;
 
     const PreparedCut& prepared_;
     const std::uint64_t most_shell_work_;
     std::mutex mutex_;
     std::uint64_t most_work_ = UINT64_MAX;
-    std::map<Key, Entry> meshes_;
+    std::unordered_map<PieceKind, Entry, PieceKindHash> meshes_;
     std::atomic<double> coarsest_shell_ = 0;
     mutable std::atomic<std::uint64_t> shell_work_ = 0;
 };

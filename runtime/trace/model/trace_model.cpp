@@ -14,24 +14,12 @@
 #include "compiler/detail/work.h"
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stage_price.h"
-#include "runtime/trace/model/drawn_bounds.h"
+#include "compiler/unfolded/drawn_bounds.h"
 #include "runtime/trace/model/unroll.h"
 
 namespace graftal {
 
 namespace {
-
-/// Sizes are kept in here, so that inverses are numbers too.
-constexpr double least_half = 1e-140, largest_half = 1e140;
-
-/// Where the frame of a node lies in the frame that the graph gives it. Scaled by a power of two, so that
-/// maps keep their digits.
-Affine graph_from_frame(const CutNode& node, const Box& box) {
-    if (node.primitive || box.empty()) return {};
-    const Vec3 half = 0.5 * box.max - 0.5 * box.min;
-    const double size = std::clamp(std::max({half.x, half.y, half.z}), least_half, largest_half);
-    return Affine::translate(box.centre()) * Affine::scale(Vec3(std::exp2(std::ceil(std::log2(size)))));
-}
 
 TraceNode::Kind kind_of(const CutNode& node) {
     if (node.primitive) return TraceNode::Kind::primitive;

@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "runtime/trace/model/drawn_bounds.h"
+#include "compiler/unfolded/drawn_bounds.h"
 
 namespace graftal {
 

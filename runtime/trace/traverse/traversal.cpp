@@ -159,9 +159,9 @@ const TraceMesh& Traversal::shell_of(const Frame& frame) {
     const Ball ball{world_from_node(vec3_of(node.ball_centre)), frame.scale * node.ball_radius};
     const Affine& graph_from_frame = model_.graph_from_frame[frame.node];
     const double detail_per_unit = frame.scale * model_.projection.detail_per_unit(ball);
-    const MeshStore::Key key =
+    const PieceKind key =
         model_.meshes.key(model_.layers.source[frame.node], graph_from_frame, frame.steps, detail_per_unit);
-    const auto hash = static_cast<std::size_t>(key.detail) * 31 + key.node * 13 + key.steps;
+    const auto hash = static_cast<std::size_t>(key.unit_step) * 31 + key.node * 13 + key.steps;
     auto& [known, mesh] = meshes_[hash % meshes_.size()];
     if (!mesh || known != key) {
         mesh = &model_.meshes.mesh(key, graph_from_frame);

@@ -265,7 +265,7 @@ class Traversal final : public Surfaces {
     std::unique_ptr<PacketRoom> packet_;  ///< null where rays go one by one
     Best best_;
     /// Shells asked for lately, by a hash of their keys: the store has to be locked.
-    std::array<std::pair<MeshStore::Key, const TraceMesh*>, 64> meshes_{};
+    std::array<std::pair<PieceKind, const TraceMesh*>, 64> meshes_{};
     Ray ray_;                          ///< in the world
     std::vector<FlatPart> flat_parts_; ///< to be met
     FlatImage flat_image_;

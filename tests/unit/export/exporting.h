@@ -26,7 +26,7 @@ class Exporting {
     std::string path(const std::string& name) const { return folder_.path() + "/" + name; }
 
     /// As the command would make it, with the error only if `options.error_asked`.
-    std::optional<ExportedScene> scene(SceneMeshes meshes, const SceneLimits& limits = {}) {
+    std::optional<UnfoldedScene> scene(SceneMeshes meshes, const SceneLimits& limits = {}) {
         StageOptions stages = options.compile;
         stages.detail.keeps_objects = true;
         if (!options.error_asked) stages.detail.error_px = 0;

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "compiler/analysis/counts.h"
-#include "runtime/export/levels.h"
-#include "runtime/export/looks.h"
+#include "compiler/unfolded/levels.h"
+#include "compiler/unfolded/looks.h"
 #include "runtime/export/mesh_groups.h"
 #include "tests/unit/export/exporting.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::vector<SceneLeaf> leaves_of(const ExportedScene& scene) {
+std::vector<SceneLeaf> leaves_of(const UnfoldedScene& scene) {
     std::vector<SceneLeaf> leaves;
     walk_leaves(scene, scene.root, {}, {}, [&](const SceneLeaf& leaf) {
         leaves.push_back(leaf);
@@ -34,7 +34,7 @@ double difference(const Affine& a, const Affine& b) {
 }
 
 /// The same leaves at the same places in the same order, in nearly the same colours.
-void expect_alike(const ExportedScene& a, const ExportedScene& b, double colours) {
+void expect_alike(const UnfoldedScene& a, const UnfoldedScene& b, double colours) {
     const std::vector<SceneLeaf> as = leaves_of(a), bs = leaves_of(b);
     ASSERT_EQ(as.size(), bs.size());
     for (std::size_t i = 0; i < as.size(); ++i) {
@@ -46,7 +46,7 @@ void expect_alike(const ExportedScene& a, const ExportedScene& b, double colours
     }
 }
 
-TEST(ExportedScene, CountsLeavesAsStatsDoes) {
+TEST(UnfoldedScene, CountsLeavesAsStatsDoes) {
     for (const unsigned steps : {0u, 1u, 2u, 5u, 40u}) {
         Exporting exporting("m.rifs", cubes);
         exporting.options.compile.lower.steps = steps;
@@ -66,7 +66,7 @@ TEST(ExportedScene, CountsLeavesAsStatsDoes) {
     EXPECT_EQ(leaves_of(*scene).size(), static_cast<std::size_t>(leaves_of_shrub));
 }
 
-TEST(ExportedScene, GrowsWithTheLevelsNotWithTheLeaves) {
+TEST(UnfoldedScene, GrowsWithTheLevelsNotWithTheLeaves) {
     Exporting exporting("m.rifs", cubes);
     exporting.options.compile.lower.steps = 60;
     const auto scene = exporting.scene(SceneMeshes::shared);
@@ -78,7 +78,7 @@ TEST(ExportedScene, GrowsWithTheLevelsNotWithTheLeaves) {
     EXPECT_GE(counts.depth, 60u);
 }
 
-TEST(ExportedScene, EndsByTheSizeInThePicture) {
+TEST(UnfoldedScene, EndsByTheSizeInThePicture) {
     std::size_t before = SIZE_MAX;
     for (const double error_px : {4.0, 8.0, 32.0}) {
         Exporting exporting("m.rifs", cubes);
@@ -93,7 +93,7 @@ TEST(ExportedScene, EndsByTheSizeInThePicture) {
     }
 }
 
-TEST(ExportedScene, ALengthIsTheSameEverywhere) {
+TEST(UnfoldedScene, ALengthIsTheSameEverywhere) {
     Exporting exporting("m.rifs", cubes);
     exporting.options.error_asked = true;
     exporting.options.compile.detail.error_world = 0.05;
@@ -107,7 +107,7 @@ TEST(ExportedScene, ALengthIsTheSameEverywhere) {
     }
 }
 
-TEST(ExportedScene, FinerMeshesForWhatIsLarger) {
+TEST(UnfoldedScene, FinerMeshesForWhatIsLarger) {
     Exporting exporting("m.inst", "object m {\n sphere\n sphere scale: 1/64 translate: 2, 0, 0\n}\n");
     const auto by_size = exporting.scene(SceneMeshes::by_size), shared = exporting.scene(SceneMeshes::shared);
     ASSERT_TRUE(by_size && shared);
@@ -117,7 +117,7 @@ TEST(ExportedScene, FinerMeshesForWhatIsLarger) {
     EXPECT_GT(shared->shapes[0].fineness, std::min(by_size->shapes[0].fineness, by_size->shapes[1].fineness));
 }
 
-TEST(ExportedScene, TooManyPartsAreAnError) {
+TEST(UnfoldedScene, TooManyPartsAreAnError) {
     Exporting exporting("m.rifs", cubes);
     exporting.options.compile.lower.steps = 50;
     EXPECT_FALSE(exporting.scene(SceneMeshes::shared, {.nodes = 20, .parts = 1000}));
@@ -126,14 +126,14 @@ TEST(ExportedScene, TooManyPartsAreAnError) {
 }
 
 // A chain of two billion levels was unfolded three times, up to the limit of nodes, before it was refused.
-TEST(ExportedScene, TooManyLevelsAreAnErrorBeforehand) {
+TEST(UnfoldedScene, TooManyLevelsAreAnErrorBeforehand) {
     Exporting exporting("m.rifs", cubes);
     exporting.options.compile.lower.steps = 2147483648;
     EXPECT_FALSE(exporting.scene(SceneMeshes::shared));
     EXPECT_THAT(exporting.said(), HasSubstr("this model has 2147483648 levels"));
 }
 
-TEST(ExportedScene, PlanesAreLeftOut) {
+TEST(UnfoldedScene, PlanesAreLeftOut) {
     Exporting exporting("m.inst", "object m {\n plane\n cube\n}\n");
     const auto scene = exporting.scene(SceneMeshes::shared);
     ASSERT_TRUE(scene) << exporting.said();
@@ -141,7 +141,7 @@ TEST(ExportedScene, PlanesAreLeftOut) {
     EXPECT_EQ(count(*scene).leaves, 1);
 }
 
-TEST(ExportedScene, WhatHasNoThicknessGetsALittle) {
+TEST(UnfoldedScene, WhatHasNoThicknessGetsALittle) {
     Exporting exporting("m.rifs",
                         "rifs m {\n codes 2d {\n stem: 0 0 0 .16 0 0 .1\n frond: .8 .1 -.1 .8 0 1.6 .9\n }\n"
                         " terminal sphere\n}\n");

@@ -174,7 +174,7 @@ TEST_F(FitWork, NoShellIsMadeBeyondTheWorkForThem) {
     MeshStore& meshes = crowded.model->meshes;
     ASSERT_GT(meshes.shell_work(), 0u);
     const std::uint64_t before = meshes.shell_work();
-    const MeshStore::Key key = meshes.key(crowded.model->prepared.cut.root, {}, unlimited_steps, 7);
+    const PieceKind key = meshes.key(crowded.model->prepared.cut.root, {}, unlimited_steps, 7);
     meshes.make_until(before - 1);
     EXPECT_TRUE(meshes.mesh(key, {}).corners.empty());
     EXPECT_EQ(meshes.shell_work(), before);

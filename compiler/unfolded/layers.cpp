@@ -1,13 +1,15 @@
-#include "runtime/trace/model/layers.h"
+#include "compiler/unfolded/layers.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <numeric>
+#include <unordered_map>
 #include <utility>
 
 #include "compiler/detail/graph/edge_cell.h"
+#include "compiler/detail/graph/piece_kind.h"
 
 namespace graftal {
 
@@ -38,12 +40,11 @@ class Layering {
 
   private:
     NodeId copy_of(NodeId node, std::uint32_t steps) {
-        if (!cut_.nodes[node].unending) steps = 0;
-        const auto [place, added] =
-            copies_.emplace(std::pair(node, steps), static_cast<NodeId>(result_.source.size()));
+        const PieceKind kind = without_idle_levels(cut_, {node, steps});
+        const auto [place, added] = copies_.emplace(kind, static_cast<NodeId>(result_.source.size()));
         if (added) {
             result_.source.push_back(node);
-            steps_.push_back(steps);
+            steps_.push_back(kind.steps);
         }
         return place->second;
     }
@@ -78,7 +79,7 @@ class Layering {
     const CutGraph& cut_;
     LayeredGraph result_;
     std::vector<std::uint32_t> steps_; ///< by copy
-    std::map<std::pair<NodeId, std::uint32_t>, NodeId> copies_;
+    std::unordered_map<PieceKind, NodeId, PieceKindHash> copies_;
     std::map<const CellSource*, std::shared_ptr<const CellSource>> sources_;
 };
 

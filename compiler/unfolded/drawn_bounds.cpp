@@ -1,5 +1,7 @@
-#include "runtime/trace/model/drawn_bounds.h"
+#include "compiler/unfolded/drawn_bounds.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <glm/matrix.hpp>
@@ -157,6 +159,15 @@ class Bounder {
 };
 
 } // namespace
+
+Affine graph_from_frame(const CutNode& node, const Box& box) {
+    // Sizes are kept in here, so that inverses are numbers too.
+    constexpr double least_half = 1e-140, largest_half = 1e140;
+    if (node.primitive || box.empty()) return {};
+    const Vec3 half = 0.5 * box.max - 0.5 * box.min;
+    const double size = std::clamp(std::max({half.x, half.y, half.z}), least_half, largest_half);
+    return Affine::translate(box.centre()) * Affine::scale(Vec3(std::exp2(std::ceil(std::log2(size)))));
+}
 
 bool keeps_axes(const Mat3& m) {
     for (int column = 0; column < 3; ++column) {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "compiler/support/diagnostics.h"
-#include "runtime/export/exported_scene.h"
+#include "compiler/unfolded/scene.h"
 
 namespace graftal {
 
@@ -23,7 +23,7 @@ struct LookLimits {
 /// placed with, and none has a cell. Where that makes too much, tints are told apart less finely, and a
 /// warning says so. A part below a tint that covers nearly all of it then has its mean colour. Nothing,
 /// after an error, if even that is too much.
-std::optional<ExportedScene> resolve_looks(const ExportedScene& scene, const LookLimits& limits, Span model,
+std::optional<UnfoldedScene> resolve_looks(const UnfoldedScene& scene, const LookLimits& limits, Span model,
                                            Diagnostics& diagnostics);
 
 } // namespace graftal

@@ -1,4 +1,4 @@
-#include "runtime/export/exported_scene.h"
+#include "compiler/unfolded/scene.h"
 
 #include <algorithm>
 
@@ -14,15 +14,15 @@ Rgb SceneLook::colour() const {
     return glm::clamp(tint.over(inherited), 0.0, 1.0);
 }
 
-SceneShape ExportedScene::shape_for(const Primitive& primitive, double errors_per_unit) const {
+SceneShape UnfoldedScene::shape_for(const Primitive& primitive, double errors_per_unit) const {
     return {primitive, one_mesh ? 0 : fineness(primitive, errors_per_unit)};
 }
 
-int ExportedScene::fineness(const Primitive& primitive, double errors_per_unit) const {
+int UnfoldedScene::fineness(const Primitive& primitive, double errors_per_unit) const {
     return fineness_for(primitive, tolerance_errors / std::max(errors_per_unit, 1e-300));
 }
 
-bool sort_masters_first(ExportedScene& scene) {
+bool sort_masters_first(UnfoldedScene& scene) {
     // Kahn's algorithm, from the root down.
     std::vector<std::uint64_t> users(scene.nodes.size());
     for (const SceneNode& node : scene.nodes)
@@ -39,7 +39,7 @@ bool sort_masters_first(ExportedScene& scene) {
     return order.size() == scene.nodes.size();
 }
 
-BigCount sum_over_leaves(const ExportedScene& scene,
+BigCount sum_over_leaves(const UnfoldedScene& scene,
                          const std::function<std::uint64_t(const SceneShape&)>& value) {
     std::vector<BigCount> sums(scene.nodes.size());
     for (const SceneId id : scene.masters_first) {
@@ -50,7 +50,7 @@ BigCount sum_over_leaves(const ExportedScene& scene,
     return sums[scene.root];
 }
 
-SceneCounts count(const ExportedScene& scene) {
+SceneCounts count(const UnfoldedScene& scene) {
     SceneCounts counts;
     counts.leaves = sum_over_leaves(scene, [](const SceneShape&) { return 1; });
     counts.triangles = sum_over_leaves(scene, [](const SceneShape& shape) {
@@ -76,7 +76,7 @@ std::string in_words(const BigCount& number) {
     return fmt::format("{}.{}e+{}", digits[0], digits.substr(1, 2), digits.size() - 1);
 }
 
-SceneLook look_through(const ExportedScene& scene, const SceneLook& look, const SceneNode& node,
+SceneLook look_through(const UnfoldedScene& scene, const SceneLook& look, const SceneNode& node,
                        const ScenePart& part) {
     SceneLook after = look;
     after.descend(look_step(part, &node.mean, scene.materials));
@@ -95,7 +95,7 @@ struct WalkFrame {
 
 } // namespace
 
-bool walk_leaves(const ExportedScene& scene, SceneId from, const Affine& world_from_node,
+bool walk_leaves(const UnfoldedScene& scene, SceneId from, const Affine& world_from_node,
                  const SceneLook& look, const std::function<bool(const SceneLeaf&)>& visit) {
     const SceneNode& start = scene.nodes[from];
     if (start.shape) return visit({from, *start.shape, world_from_node, look});

@@ -1,4 +1,4 @@
-#include "runtime/export/looks.h"
+#include "compiler/unfolded/looks.h"
 
 #include <algorithm>
 #include <array>
@@ -39,7 +39,7 @@ struct LookKey {
 
 class LookResolver {
   public:
-    LookResolver(const ExportedScene& scene, const TintDetail& detail, const LookLimits& limits,
+    LookResolver(const UnfoldedScene& scene, const TintDetail& detail, const LookLimits& limits,
                  std::size_t most_parts)
         : scene_(scene), detail_(detail), limits_(limits), most_parts_(most_parts), open_(scene.nodes.size()),
           tinted_(scene.nodes.size()) {
@@ -54,7 +54,7 @@ class LookResolver {
         }
     }
 
-    std::optional<ExportedScene> resolve() {
+    std::optional<UnfoldedScene> resolve() {
         resolved_.shapes = scene_.shapes;
         resolved_.materials = scene_.materials;
         resolved_.bounds = scene_.bounds;
@@ -145,13 +145,13 @@ class LookResolver {
         return known->second;
     }
 
-    const ExportedScene& scene_;
+    const UnfoldedScene& scene_;
     const TintDetail detail_;
     const LookLimits limits_;
     const std::size_t most_parts_;
     std::vector<bool> open_;   ///< by node: what it inherits shows somewhere below it
     std::vector<bool> tinted_; ///< by node: something below it has a tint
-    ExportedScene resolved_;
+    UnfoldedScene resolved_;
     std::map<LookKey, SceneId> known_;
     std::vector<Waiting> waiting_;
     std::size_t parts_ = 0;
@@ -159,13 +159,13 @@ class LookResolver {
 
 } // namespace
 
-std::optional<ExportedScene> resolve_looks(const ExportedScene& scene, const LookLimits& limits, Span model,
+std::optional<UnfoldedScene> resolve_looks(const UnfoldedScene& scene, const LookLimits& limits, Span model,
                                            Diagnostics& diagnostics) {
     for (const TintDetail& detail : tint_details) {
         const bool last = &detail == std::end(tint_details) - 1;
         const std::size_t most_parts =
             last ? most_resolved_parts : std::min(most_resolved_parts, limits.wanted_parts);
-        std::optional<ExportedScene> resolved = LookResolver(scene, detail, limits, most_parts).resolve();
+        std::optional<UnfoldedScene> resolved = LookResolver(scene, detail, limits, most_parts).resolve();
         if (!resolved) continue;
         if (detail.least_open > 0)
             diagnostics.warning(

@@ -1,4 +1,4 @@
-#include "runtime/export/build_scene.h"
+#include "compiler/unfolded/build_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,20 +35,6 @@ constexpr double given_thickness = 1e-4;
 constexpr std::size_t most_crushed_leaves = 1'000'000;
 constexpr std::int32_t largest_size_step = 1 << 24;
 
-/// Key of a shared node: with the levels it has left, and the step of the errors that measure its unit.
-struct SharedKey {
-    NodeId node = 0;
-    std::uint32_t steps = 0;
-    std::int32_t size_step = 0;
-    bool operator==(const SharedKey&) const = default;
-};
-
-struct SharedKeyHash {
-    std::size_t operator()(const SharedKey& key) const {
-        return PieceKindHash()({key.node, key.steps, key.size_step});
-    }
-};
-
 /// A node at its place in the world, if it has one of its own.
 struct PlacedNode {
     Affine world_from_node;
@@ -57,7 +43,7 @@ struct PlacedNode {
 
 struct SceneTask {
     SceneId id = 0;
-    SharedKey key;
+    PieceKind key;
     std::optional<PlacedNode> placed;
 };
 
@@ -88,7 +74,7 @@ class SceneBuilder {
             scene_.tolerance_errors = tessellation_tolerance(detail_.error_px) / detail_.error_px;
     }
 
-    ExportedScene build() {
+    UnfoldedScene build() {
         scene_.nodes.emplace_back();
         scene_.nodes[0].name = cut_.nodes[cut_.root].name;
         CutEdge to_root;
@@ -142,7 +128,7 @@ class SceneBuilder {
     /// Errors that measure a unit of the task's node.
     double errors_of(const SceneTask& task) const {
         return task.placed ? errors_per_unit(world_ball(task.key.node, *task.placed))
-                           : errors_of(task.key.size_step);
+                           : errors_of(task.key.unit_step);
     }
 
     Ball world_ball(NodeId node, const PlacedNode& placed) const {
@@ -168,7 +154,7 @@ class SceneBuilder {
     }
 
     /// The scene's node for a key, made at its first use. Requires a node that is no primitive.
-    SceneId shared(const SharedKey& key) {
+    SceneId shared(const PieceKind& key) {
         const auto known = shared_.find(key);
         if (known != shared_.end()) return known->second;
         const SceneId id = add_node(cut_.nodes[key.node].name);
@@ -177,7 +163,7 @@ class SceneBuilder {
         return id;
     }
 
-    SceneId unshared(const SharedKey& key, const PlacedNode& placed) {
+    SceneId unshared(const PieceKind& key, const PlacedNode& placed) {
         const SceneId id = add_node(cut_.nodes[key.node].name);
         tasks_.push_back({id, key, placed});
         return id;
@@ -200,7 +186,7 @@ class SceneBuilder {
         part.node_from_part = edge.node_from_child;
         part.tint = edge.tint;
         part.material = edge.material;
-        SharedKey key{edge.child, child.unending ? steps_below(task.key.steps, edge) : unlimited_steps, 0};
+        PieceKind key = without_idle_levels(cut_, {edge.child, steps_below(task.key.steps, edge), 0});
         if (task.placed) {
             PlacedNode placed;
             placed.world_from_node = task.placed->world_from_node * edge.node_from_child;
@@ -213,13 +199,13 @@ class SceneBuilder {
             else if (!is_shared(child, ball))
                 part.node = unshared(key, placed);
             else {
-                key.size_step = size_step(child_errors);
+                key.unit_step = size_step(child_errors);
                 part.node = shared(key);
             }
         } else if (child.primitive) {
             part.node = leaf(*child.primitive, errors * edge.stretch);
         } else {
-            key.size_step = step_below(task.key.size_step, edge);
+            key.unit_step = step_below(task.key.unit_step, edge);
             part.node = shared(key);
         }
         if (child.primitive) part.turns = length_in_turns(edge.node_from_child.linear);
@@ -342,8 +328,7 @@ class SceneBuilder {
                 Crushed below{edge.child, steps_below(at.steps, edge), at.place * edge.node_from_child, 1,
                               at.look};
                 below.scale = size_below(at.scale, edge, below.place.linear);
-                below.look.tint = at.look.tint * edge.tint;
-                if (edge.material) below.look.material = edge.material;
+                below.look.descend(look_step(cut_, node, cut, edge));
                 stack.push_back(below);
             });
             std::reverse(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.end());
@@ -376,8 +361,8 @@ class SceneBuilder {
     const int grain_; ///< 0: sizes are not told apart
     const SceneLimits limits_;
     WorkMeter meter_;
-    ExportedScene scene_;
-    std::unordered_map<SharedKey, SceneId, SharedKeyHash> shared_;
+    UnfoldedScene scene_;
+    std::unordered_map<PieceKind, SceneId, PieceKindHash> shared_; ///< sizes in steps of the grain
     std::vector<SceneTask> tasks_;
     std::size_t parts_ = 0;
     double whole_ = std::numeric_limits<double>::infinity(); ///< errors that measure a unit of the world
@@ -385,13 +370,13 @@ class SceneBuilder {
 
 } // namespace
 
-std::optional<ExportedScene> build_scene(const PreparedCut& prepared, const View& view,
+std::optional<UnfoldedScene> build_scene(const PreparedCut& prepared, const View& view,
                                          const DetailOptions& detail, SceneMeshes meshes, Span model,
                                          const SceneLimits& limits, const Control& control,
                                          Diagnostics& diagnostics) {
-    const auto attempt = [&](int grain) -> std::optional<ExportedScene> {
+    const auto attempt = [&](int grain) -> std::optional<UnfoldedScene> {
         try {
-            ExportedScene scene =
+            UnfoldedScene scene =
                 SceneBuilder(prepared, view, detail, meshes, grain, limits, control).build();
             if (sort_masters_first(scene)) return scene;
         } catch (const SceneTooLarge&) {
@@ -406,7 +391,7 @@ std::optional<ExportedScene> build_scene(const PreparedCut& prepared, const View
             .with_hint("leave out small parts with '--error PX', or set a smaller depth with '--steps N'");
         return std::nullopt;
     }
-    std::optional<ExportedScene> scene;
+    std::optional<UnfoldedScene> scene;
     if (detail.culls())
         scene = attempt(culling_grain);
     else

@@ -1,4 +1,4 @@
-#include "runtime/export/levels.h"
+#include "compiler/unfolded/levels.h"
 
 #include <algorithm>
 
@@ -7,9 +7,9 @@ namespace graftal {
 namespace {
 
 /// Takes apart what is not kept. The root is kept.
-std::optional<ExportedScene> without(const ExportedScene& scene, const std::vector<bool>& kept,
+std::optional<UnfoldedScene> without(const UnfoldedScene& scene, const std::vector<bool>& kept,
                                      std::size_t most_parts) {
-    ExportedScene result = scene;
+    UnfoldedScene result = scene;
     std::size_t count = 0;
     for (const SceneId id : scene.masters_first) {
         if (!kept[id]) continue;
@@ -38,7 +38,7 @@ std::optional<ExportedScene> without(const ExportedScene& scene, const std::vect
 
 } // namespace
 
-std::optional<ExportedScene> with_levels(const ExportedScene& scene, unsigned levels,
+std::optional<UnfoldedScene> with_levels(const UnfoldedScene& scene, unsigned levels,
                                          std::size_t most_parts) {
     std::vector<unsigned> height(scene.nodes.size(), 0);
     for (const SceneId id : scene.masters_first)

@@ -63,7 +63,7 @@ struct SceneNode {
     SceneLook look;                       ///< of a leaf, once looks are resolved (looks.h)
 };
 
-struct ExportedScene {
+struct UnfoldedScene {
     std::vector<SceneShape> shapes;
     std::vector<SceneNode> nodes;
     std::vector<SceneId> masters_first; ///< all nodes, parts before what holds them
@@ -84,13 +84,13 @@ struct ExportedScene {
 };
 
 /// Calls `visit(part)` on the parts of a node in their order, those of its cell too.
-template<typename Visit> void for_each_part(const ExportedScene& scene, const SceneNode& node, Visit&& visit);
+template<typename Visit> void for_each_part(const UnfoldedScene& scene, const SceneNode& node, Visit&& visit);
 
 /// Sets masters_first. False if some node leads back to itself.
-bool sort_masters_first(ExportedScene& scene);
+bool sort_masters_first(UnfoldedScene& scene);
 
 /// The sum over all leaves below the root, where a leaf of each shape counts so much.
-BigCount sum_over_leaves(const ExportedScene& scene,
+BigCount sum_over_leaves(const UnfoldedScene& scene,
                          const std::function<std::uint64_t(const SceneShape&)>& value);
 
 struct SceneCounts {
@@ -99,7 +99,7 @@ struct SceneCounts {
     std::uint64_t parts = 0;
     unsigned depth = 0; ///< parts on the longest way from the root to a leaf
 };
-SceneCounts count(const ExportedScene& scene);
+SceneCounts count(const UnfoldedScene& scene);
 
 /// "1024", or "1.07e+30" of a number with more than 15 digits.
 std::string in_words(const BigCount& number);
@@ -113,17 +113,17 @@ struct SceneLeaf {
 
 /// Visits the leaves below a node, depth first in the order of the parts, looks composed on the way from
 /// `look` on. Stops and returns false when `visit` does. Memory O(depth).
-bool walk_leaves(const ExportedScene& scene, SceneId from, const Affine& world_from_node,
+bool walk_leaves(const UnfoldedScene& scene, SceneId from, const Affine& world_from_node,
                  const SceneLook& look, const std::function<bool(const SceneLeaf&)>& visit);
 
 /// The look one part further.
-SceneLook look_through(const ExportedScene& scene, const SceneLook& look, const SceneNode& node,
+SceneLook look_through(const UnfoldedScene& scene, const SceneLook& look, const SceneNode& node,
                        const ScenePart& part);
 
 // Inlined.
 
 template<typename Visit>
-void for_each_part(const ExportedScene& scene, const SceneNode& node, Visit&& visit) {
+void for_each_part(const UnfoldedScene& scene, const SceneNode& node, Visit&& visit) {
     for (const ScenePart& part : node.parts)
         visit(part);
     if (!node.cell) return;

@@ -19,6 +19,10 @@ struct DrawnBounds {
     std::uint64_t pieces = 0;                ///< looked at to find them (bound_boxes())
 };
 
+/// The place of a node's own frame in the frame that the graph gives it: what the node draws, in `box`, fills
+/// the cube [-1, 1]^3 of its own or nearly so. Scaled by a power of two, so that maps keep their digits.
+Affine graph_from_frame(const CutNode& node, const Box& box);
+
 /// True if the box of the image is the image of the box.
 bool keeps_axes(const Mat3& m);
 

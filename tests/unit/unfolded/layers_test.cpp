@@ -1,11 +1,11 @@
-#include "runtime/trace/model/layers.h"
+#include "compiler/unfolded/layers.h"
 
 #include <cstddef>
 
 #include <gtest/gtest.h>
 
 #include "compiler/detail/graph/edge_cell.h"
-#include "tests/unit/trace/models.h"
+#include "tests/unit/unfolded/models.h"
 
 namespace graftal {
 namespace {
@@ -31,10 +31,10 @@ TEST(Layers, PartsOfRunsAreCopiesOfTheirPrimitivesToo) {
     test::place(graph, graph.root, branch, {});
     DetailOptions options;
     options.steps = 2;
-    const auto model = test::traced(graph, options);
-    const LayeredGraph layers = layered(model->prepared.cut, model->prepared.root_steps);
+    const auto prepared = test::prepared(graph, options);
+    const LayeredGraph layers = layered(prepared->cut, prepared->root_steps);
     ASSERT_EQ(layers.source.size(), layers.cut.nodes.size());
-    ASSERT_NE(layers.cut.nodes.size(), model->prepared.cut.nodes.size()) << "nothing to copy";
+    ASSERT_NE(layers.cut.nodes.size(), prepared->cut.nodes.size()) << "nothing to copy";
     std::size_t parts = 0;
     for (const CutNode& node : layers.cut.nodes) {
         if (node.cell) {

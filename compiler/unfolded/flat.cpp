@@ -1,0 +1,131 @@
+#include "compiler/unfolded/flat.h"
+
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+#include "compiler/detail/graph/edge_cell.h"
+#include "compiler/detail/graph/piece_kind.h"
+
+namespace graftal {
+
+namespace {
+
+std::array<float, 12> floats_of(const Affine& map) {
+    std::array<float, 12> floats;
+    for (std::size_t i = 0; i < 12; ++i)
+        floats[i] = static_cast<float>(i < 9 ? map.linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]
+                                             : map.translation[static_cast<int>(i - 9)]);
+    return floats;
+}
+
+/// Rounded outwards.
+std::array<float, 6> floats_of(const Box& box) {
+    std::array<float, 6> floats;
+    for (int axis = 0; axis < 3; ++axis) {
+        constexpr float infinity = std::numeric_limits<float>::infinity();
+        const auto k = static_cast<std::size_t>(axis);
+        floats[k] = std::nextafter(static_cast<float>(box.min[axis]), -infinity);
+        floats[k + 3] = std::nextafter(static_cast<float>(box.max[axis]), infinity);
+    }
+    return floats;
+}
+
+class Flattening {
+  public:
+    Flattening(const CutGraph& cut, const DrawnBounds& bounds, std::size_t most_edges)
+        : cut_(cut), bounds_(bounds), most_edges_(most_edges) {}
+
+    std::optional<FlatGraph> run(double error_px) {
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id)
+            graph_from_frame_.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));
+        flat_.root = cut_.root;
+        flat_.world_from_root = graph_from_frame_[cut_.root];
+        for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
+            add_node(id, error_px);
+            if (!fits_) return std::nullopt;
+        }
+        return std::move(flat_);
+    }
+
+  private:
+    void add_node(NodeId id, double error_px) {
+        const CutNode& node = cut_.nodes[id];
+        const Affine frame_from_graph = inverse(graph_from_frame_[id]);
+        fits_ = fits_ && !node.unbounded && !node.sealed &&
+                flat_.edges.size() + edge_count(node, false) + node.stop_edges.size() <= most_edges_;
+        if (!fits_) return;
+        FlatNode flat;
+        if (node.primitive) flat.primitive = number_of(*node.primitive);
+        flat.unending = node.unending;
+        flat.terminal = node.terminal;
+        flat.diameter = static_cast<float>(2 * frame_from_graph.linear[0][0] * node.ball.radius);
+        if (node.cullable && !node.primitive)
+            flat.cut_detail = static_cast<float>(cut_detail(node, error_px));
+        flat.frame_from_proxy = floats_of(frame_from_graph * node.node_from_proxy);
+        flat.mean = Paint(node.mean);
+        flat.proxy = Paint(colour_of_proxy(node));
+        flat.finish = node.finish.value_or(flat_none);
+        flat.first_edge = static_cast<std::uint32_t>(flat_.edges.size());
+        for (const bool stop : {false, true}) {
+            std::size_t next = 0;
+            for_each_edge(node, stop, [&](const CutEdge& edge) {
+                const auto& boxes = (stop ? bounds_.stop_edge : bounds_.edge)[id];
+                const Box box = node.cell && !stop
+                                    ? box_of_image(*cut_.nodes[edge.child].primitive, edge.node_from_child)
+                                    : boxes[next++];
+                add_edge(edge, frame_from_graph, transformed(frame_from_graph, box));
+            });
+            (stop ? flat.stop_edge_count : flat.edge_count) =
+                static_cast<std::uint32_t>(flat_.edges.size()) - flat.first_edge - flat.edge_count;
+        }
+        flat_.nodes.push_back(flat);
+    }
+
+    void add_edge(const CutEdge& edge, const Affine& frame_from_graph, const Box& box) {
+        const Affine& graph_from_child = graph_from_frame_[edge.child];
+        const Affine parent_from_child = frame_from_graph * edge.node_from_child * graph_from_child;
+        fits_ = fits_ && !is_singular(parent_from_child);
+        if (!fits_) return;
+        const Mat3 linear = inverse(parent_from_child).linear;
+        FlatEdge flat;
+        flat.child = edge.child;
+        flat.levels = edge.levels;
+        flat.material = edge.material.value_or(flat_none);
+        flat.stretch =
+            static_cast<float>(edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
+        flat.tint = Paint(edge.tint);
+        for (int k = 0; k < 3; ++k) {
+            for (int row = 0; row < 3; ++row)
+                flat.child_from_parent[static_cast<std::size_t>(3 * k + row)] = FloatPair(linear[k][row]);
+            flat.origin[static_cast<std::size_t>(k)] = FloatPair(parent_from_child.translation[k]);
+        }
+        flat.box = floats_of(box);
+        flat_.edges.push_back(flat);
+    }
+
+    std::uint32_t number_of(const Primitive& primitive) {
+        const auto [place, added] =
+            numbers_.emplace(primitive, static_cast<std::uint32_t>(flat_.primitives.size()));
+        if (added) flat_.primitives.push_back(primitive);
+        return place->second;
+    }
+
+    const CutGraph& cut_;
+    const DrawnBounds& bounds_;
+    const std::size_t most_edges_;
+    FlatGraph flat_;
+    std::vector<Affine> graph_from_frame_;
+    std::unordered_map<Primitive, std::uint32_t> numbers_;
+    bool fits_ = true;
+};
+
+} // namespace
+
+std::optional<FlatGraph> flat_graph(const LayeredGraph& layers, const DrawnBounds& bounds, double error_px,
+                                    std::size_t most_edges) {
+    return Flattening(layers.cut, bounds, most_edges).run(error_px);
+}
+
+} // namespace graftal

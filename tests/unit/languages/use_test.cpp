@@ -102,11 +102,11 @@ TEST_F(Use, models_of_other_programs_have_parts_where_their_translations_have) {
     write("tree.es", "twig\nrule twig md 3 > leaf { box { y 1 } twig }\nrule leaf { sphere }");
     write("tile.cfdg",
           "startshape A\nshape A { B(2) [] SQUARE [] }\nshape B(n) { loop (n) [x 1] CIRCLE [] }");
-    write("a.inst", "use t = \"tree.es\" use c = \"tile.cfdg\" object a { t.leaf, c.B(3) }");
+    write("a.inst", "use t = \"tree.es\" use c = \"tile.cfdg\" object a { t.leaf, c.B }");
     lower("a.inst");
     ASSERT_TRUE(graph_) << errors();
     EXPECT_EQ(object("t.leaf").instances.size(), 1u);
-    EXPECT_EQ(object("c.B(3)").instances.size(), 3u);
+    EXPECT_EQ(object("c.B").instances.size(), 2u);
     write("lines.ls", "2\n90\n10\nF\nF=FF\n@\n");
     write("b.inst", "use l = \"lines.ls\" object b { l.F }");
     lower("b.inst");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -24,6 +26,10 @@ struct LoopBounds {
     double begin = 0, end = 0, step = 1;
 
     bool goes_on(double index) const { return step > 0 ? index < end - 1e-9 : index > end + 1e-9; }
+    double turns() const {
+        const double left = step > 0 ? end - 1e-9 - begin : begin - end - 1e-9;
+        return std::max(0.0, std::ceil(left / std::abs(step)));
+    }
 };
 
 /// Evaluates expressions and adjustments whose names all have values. Functions give nothing after an error.

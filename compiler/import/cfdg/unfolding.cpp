@@ -222,7 +222,7 @@ std::optional<std::size_t> Unfolding::node_for(const ShapeValue& value, const Ta
         return known.front();
     }
     Node node{.shape = shape, .value = value, .target = target, .left = left, .world = world, .size = size};
-    node.seed = hash_of(key) + known.size() + 1000 * salt_;
+    node.seed = hash_of(key) + known.size() + 1000 * salt_ + evaluator_.seed;
     known.push_back(nodes_.size());
     // The first shape, and paths, are drawn whatever their size.
     const bool certain = !from || grammar_.shapes[shape].is_path;

@@ -38,7 +38,8 @@ Chance::Chance(const Grammar& grammar) {
         if (definition.is_function) functions_.emplace(definition.name, &definition);
     std::map<const Definition*, std::vector<const Definition*>> callers;
     std::vector<const Definition*> open;
-    for (const auto& [name, function] : functions_) {
+    for (const auto& named : functions_) {
+        const Definition* const function = named.second;
         if (any_part(function->value, draws(function->space))) open.push_back(function);
         any_part(function->value, [&](const Expr& expression) {
             if (const Definition* const called = function_named(expression, function->space))

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -12,6 +13,7 @@
 #include "compiler/import/cfdg/evaluate/value.h"
 #include "compiler/import/cfdg/parse/ast.h"
 #include "compiler/import/importer.h"
+#include "compiler/support/counter_random.h"
 
 namespace graftal::cfdg {
 
@@ -36,7 +38,8 @@ struct LoopBounds {
 class Evaluator {
   public:
     /// Both must outlive this.
-    Evaluator(const ForeignFile& file, const Grammar& grammar) : file_(file), grammar_(grammar) {
+    Evaluator(const ForeignFile& file, const Grammar& grammar)
+        : seed(file.seed == 0 ? 0 : CounterRandom::scrambled(file.seed)), file_(file), grammar_(grammar) {
         for (const Definition& definition : grammar_.definitions)
             definitions_.emplace(definition.name, &definition);
     }
@@ -62,6 +65,8 @@ class Evaluator {
 
     /// The random numbers of the rule that is evaluated.
     Draws draws;
+    /// A part of the key of all random numbers.
+    const std::uint64_t seed;
     /// Comparisons of sides that are left for the outlines of all paths.
     std::size_t outline_work = 100'000'000;
 

@@ -349,6 +349,39 @@ TEST(ContextFree, ParametersOfPaths) {
     EXPECT_NEAR(area_of("MOVETO(0,0) loop 3 [r 90] LINETO(1,0) CLOSEPOLY() FILL[]"), 1, 1e-4);
 }
 
+// Found by grammars whose picture no seed changed.
+TEST(ContextFree, ASeedDrawsAnotherVariation) {
+    const auto places = [](const std::string& grammar, std::uint64_t seed) {
+        const ImportedShapes model("a.cfdg", "startshape A\n" + grammar, seed);
+        EXPECT_TRUE(model.graph) << model.said();
+        std::vector<double> all;
+        for (const UnfoldedLeaf& leaf : model.leaves())
+            all.push_back(leaf.world_from_object.translation.x);
+        return all;
+    };
+    const std::string spread = "shape A { SQUARE [x (rand(1))] }";
+    for (const std::string& grammar : {spread, std::string("k = rand(1)\nshape A { SQUARE [x k] }"),
+                                       std::string("shape A { SQUARE [x (rand_static(1))] }")}) {
+        const double usual = places(grammar, 0).at(0), seventh = places(grammar, 7).at(0);
+        EXPECT_GT(std::abs(usual - seventh), 1e-3) << grammar;
+        EXPECT_EQ(places(grammar, 7).at(0), seventh) << grammar;
+        EXPECT_EQ(ImportedShapes("a.cfdg", "startshape A\n" + grammar)
+                      .leaves()
+                      .at(0)
+                      .world_from_object.translation.x,
+                  usual);
+    }
+    // Numbers of many seeds are spread evenly, and rules are chosen by their weights.
+    double sum = 0;
+    std::size_t pairs = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        sum += places(spread, seed).at(0);
+        pairs += places("rule A { SQUARE { } }\nrule A 3 { SQUARE { } SQUARE { } }", seed).size() - 1;
+    }
+    EXPECT_NEAR(sum / 400, 0.5, 0.05);
+    EXPECT_NEAR(static_cast<double>(pairs) / 400, 0.75, 0.07);
+}
+
 TEST(ContextFree, ChanceDecidesOnceForEachVariant) {
     const std::string text = "startshape A\nshape A { loop i = 40 [x 1] B [] }\n"
                              "shape B { if (rand(2) > 1) SQUARE [] else { CIRCLE [] CIRCLE [] } }";

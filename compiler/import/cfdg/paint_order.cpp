@@ -75,6 +75,7 @@ PaintOrder::PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std
             for (double& number : heights_[object])
                 number *= most_width / spread.width;
             spread.width = most_width;
+            crowded_ = true;
         }
         spreads[object] = spread;
     }

@@ -35,6 +35,8 @@ class PaintOrder {
     double gap() const { return gap_; }
     /// The height of the highest line over the root.
     double top() const { return top_; }
+    /// Whether there are more lines than heights tell apart.
+    bool is_crowded() const { return crowded_; }
 
   private:
     /// The extent of an object's drawing, in units of the least distance.
@@ -45,6 +47,7 @@ class PaintOrder {
 
     std::vector<std::vector<double>> heights_; ///< first the numbers of lines, then their heights
     double top_ = 0, gap_ = 0;
+    bool crowded_ = false;
 };
 
 } // namespace graftal::cfdg

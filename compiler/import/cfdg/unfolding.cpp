@@ -99,7 +99,6 @@ Translation Unfolding::write() {
         middle_and_half_ = {0.5 * (least_ + most_), glm::max(half, Vec3(0.05 * std::max(extent_, 1e-3)))};
     }
     if (file_.diagnostics.has_errors()) return std::move(out_);
-    if (first) find_order(*first);
     write_scene();
     if (first) {
         if (full_)
@@ -117,7 +116,8 @@ Translation Unfolding::write() {
 std::optional<std::size_t> Unfolding::unfold_from(const ShapeValue& shape, const Target& target,
                                                   const Affine& world) {
     std::optional<std::size_t> first;
-    endless_ = !translucent_ && !deep_ && recursion_.is_endless(grammar_.numbers.at(shape.name));
+    const bool may_be_endless = !deep_ && recursion_.is_endless(grammar_.numbers.at(shape.name));
+    endless_ = may_be_endless && !translucent_;
     for (salt_ = 0; salt_ < most_trials && !drawn_ && file_.diagnostics.error_count() == 0; ++salt_) {
         const bool known = stretches_;
         first = unfold_once(shape, target, world);
@@ -132,6 +132,17 @@ std::optional<std::size_t> Unfolding::unfold_from(const ShapeValue& shape, const
         }
         if (!random_[grammar_.numbers.at(shape.name)]) break;
     }
+    if (!first || file_.diagnostics.error_count() > 0) return first;
+    find_order(*first);
+    if (!may_be_endless || endless_ || fills_ || stretches_ || !order_->is_crowded()) return first;
+    // Veils lie in their order. Where there are more than heights tell apart, recursion has no end either.
+    for (const bool endless : {true, false}) {
+        endless_ = endless;
+        turns_ = colour_steps_ = 0;
+        first = unfold_once(shape, target, world);
+        if (!full_) break; // else recursion made new shapes for ever
+    }
+    if (first) find_order(*first);
     return first;
 }
 
@@ -159,21 +170,6 @@ std::optional<std::size_t> Unfolding::unfold_once(const ShapeValue& shape, const
         unfold(id);
     }
     return first;
-}
-
-const Rule& Unfolding::rule_of(const Shape& shape) {
-    if (shape.rules.size() == 1) return shape.rules.front();
-    double percents = 0, weights = 0;
-    for (const Rule& rule : shape.rules)
-        (rule.percent ? percents : weights) += rule.weight.value_or(1);
-    const double plain = percents > 0 && weights > 0 ? std::max(0.0, 100 - percents) / weights : 1;
-    double all = percents + weights * plain;
-    double drawn = evaluator_.draws.unit() * all;
-    for (const Rule& rule : shape.rules) {
-        drawn -= rule.weight.value_or(1) * (rule.percent ? 1 : plain);
-        if (drawn < 0) return rule;
-    }
-    return shape.rules.back();
 }
 
 // Nodes
@@ -240,7 +236,7 @@ void Unfolding::unfold(std::size_t id) {
     if (shape.rules.empty()) return fail(shape.span, fmt::format("'{}' has no rule", shape.name));
     const Surroundings at{std::move(*values), shape.space, &shape};
     if (shape.is_path) return unfold_path(id, at);
-    expand(rule_of(shape).body, at, {id, {}});
+    expand(evaluator_.rule(shape).body, at, {id, {}});
 }
 
 void Unfolding::unfold_path(std::size_t id, const Surroundings& at) {

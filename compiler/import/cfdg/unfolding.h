@@ -70,7 +70,6 @@ class Unfolding : private SceneWriter {
                                            const Affine& world);
     void unfold(std::size_t id);
     void unfold_path(std::size_t id, const Surroundings& at);
-    const Rule& rule_of(const Shape& shape);
     void expand(const Elements& elements, Surroundings at, const Under& under);
     void expand_loop(const Element& element, Surroundings at, Under under);
     bool is_even(const Element& loop, const std::string& space) const;

@@ -360,6 +360,21 @@ std::optional<Value> Evaluator::select(const Expr& expression, const Surrounding
     return value(*parts[1 + static_cast<std::size_t>(std::clamp(std::floor(*index), 0.0, last))], at);
 }
 
+const Rule& Evaluator::rule(const Shape& shape) {
+    if (shape.rules.size() == 1) return shape.rules.front();
+    double percents = 0, weights = 0;
+    for (const Rule& rule : shape.rules)
+        (rule.percent ? percents : weights) += rule.weight.value_or(1);
+    const double plain = percents > 0 && weights > 0 ? std::max(0.0, 100 - percents) / weights : 1;
+    double all = percents + weights * plain;
+    double drawn = draws.unit() * all;
+    for (const Rule& rule : shape.rules) {
+        drawn -= rule.weight.value_or(1) * (rule.percent ? 1 : plain);
+        if (drawn < 0) return rule;
+    }
+    return shape.rules.back();
+}
+
 std::optional<Value> Evaluator::shape_value(const Expr& expression, std::string_view name,
                                             const Surroundings& at) {
     const bool reuses = expression.operands.size() == 1 && expression.operands[0].kind == Expr::Kind::name &&

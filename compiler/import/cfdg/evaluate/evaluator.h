@@ -55,6 +55,8 @@ class Evaluator {
     std::optional<Values> bind(const std::vector<Parameter>& parameters, const std::vector<Value>& arguments,
                                Span place);
 
+    /// The rule of a shape that chance chooses. Requires that there is one.
+    const Rule& rule(const Shape& shape);
     /// The lines of a `switch` that count; null if none do, or after an error.
     const Elements* choice(const Element& element, const Surroundings& at);
     std::optional<LoopBounds> bounds(const Element& loop, const Surroundings& at);

@@ -120,6 +120,18 @@ TEST(ContextFree, RecursionWithoutEndMayHaveValuesAndChance) {
     EXPECT_EQ(hidden.leaves().size(), 2u);
 }
 
+// Found by a random grammar of 10^22 veils: it had an object for each size, and its picture was black.
+TEST(ContextFree, MoreVeilsThanHeightsTellApartHaveNoEnd) {
+    const auto objects = [](const std::string& turns) {
+        const ImportedShapes model("a.cfdg", "startshape A\nshape A { SQUARE [a -0.5] loop " + turns +
+                                                 " [r 1 y -1] A [s 0.84819] }");
+        EXPECT_TRUE(model.graph) << model.said();
+        return objects_in(model);
+    };
+    EXPECT_EQ(objects("3"), 2u) << "A and the square";
+    EXPECT_GT(objects("1"), 20u) << "few veils lie in their order";
+}
+
 TEST(ContextFree, TurnsThatDrawTheSameAreParts) {
     const ImportedShapes model("a.cfdg", "startshape A\nshape A { loop 301 [x 1] loop 300 [y 1] SQUARE [] }");
     ASSERT_TRUE(model.graph) << model.said();

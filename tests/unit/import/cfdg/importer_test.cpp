@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -152,24 +153,23 @@ TEST(ContextFree, TurnsThatDrawTheSameAreParts) {
         const ImportedShapes one("a.cfdg", "startshape A\nCF::Size = [s 9]\nshape A { " + rule +
                                                " }\nshape B { TRIANGLE [b 0.5] SQUARE [s 0.1] }");
         EXPECT_TRUE(one.graph) << one.said();
-        std::vector<UnfoldedLeaf> all = one.leaves();
-        std::ranges::sort(all, {},
-                          [](const UnfoldedLeaf& leaf) { return leaf.world_from_object.translation.z; });
-        return all;
+        std::multimap<double, UnfoldedLeaf> by_height;
+        for (const UnfoldedLeaf& leaf : one.leaves())
+            by_height.emplace(leaf.world_from_object.translation.z, leaf);
+        return by_height;
     };
     const std::string rest = " [r 10 x 0.1 b 0.01 hue 3] { SQUARE [b 0.1 x 1] B [s 0.5] SQUARE [s 0.2";
     const std::string end = "] } finally CIRCLE [x 2] SQUARE [b 1]";
-    const std::vector<UnfoldedLeaf> parts = drawn("loop i = 45" + rest + end);
-    const std::vector<UnfoldedLeaf> turns = drawn("loop i = 45" + rest + " x (0*i)" + end);
+    const std::multimap<double, UnfoldedLeaf> parts = drawn("loop i = 45" + rest + end);
+    const std::multimap<double, UnfoldedLeaf> turns = drawn("loop i = 45" + rest + " x (0*i)" + end);
     ASSERT_EQ(parts.size(), 45u * 4 + 2);
     ASSERT_EQ(turns.size(), parts.size());
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        const Affine &a = parts[i].world_from_object, &b = turns[i].world_from_object;
-        EXPECT_NEAR(a.translation.x, b.translation.x, 1e-9)
-            << "the shape at this place of the painting: " << i;
+    for (auto part = parts.begin(), turn = turns.begin(); part != parts.end(); ++part, ++turn) {
+        const Affine &a = part->second.world_from_object, &b = turn->second.world_from_object;
+        EXPECT_NEAR(a.translation.x, b.translation.x, 1e-9) << "height " << part->first;
         EXPECT_NEAR(a.translation.y, b.translation.y, 1e-9);
         EXPECT_NEAR(a.linear[0].x, b.linear[0].x, 1e-9);
-        EXPECT_NEAR(parts[i].tint.over(Rgb(0.5)).g, turns[i].tint.over(Rgb(0.5)).g, 1e-6);
+        EXPECT_NEAR(part->second.tint.over(Rgb(0.5)).g, turn->second.tint.over(Rgb(0.5)).g, 1e-6);
     }
 }
 

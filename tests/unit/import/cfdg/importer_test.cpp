@@ -123,14 +123,14 @@ TEST(ContextFree, RecursionWithoutEndMayHaveValuesAndChance) {
 
 // Found by a random grammar of 10^22 veils: it had an object for each size, and its picture was black.
 TEST(ContextFree, MoreVeilsThanHeightsTellApartHaveNoEnd) {
-    const auto objects = [](const std::string& turns) {
-        const ImportedShapes model("a.cfdg", "startshape A\nshape A { SQUARE [a -0.5] loop " + turns +
-                                                 " [r 1 y -1] A [s 0.84819] }");
-        EXPECT_TRUE(model.graph) << model.said();
-        return objects_in(model);
+    const auto veils = [](const std::string& turns) {
+        return ImportedShapes("a.cfdg", "startshape A\nshape A { SQUARE [a -0.5] loop " + turns +
+                                            " [r 1 y -1] A [s 0.84819] }");
     };
-    EXPECT_EQ(objects("3"), 2u) << "A and the square";
-    EXPECT_GT(objects("1"), 20u) << "few veils lie in their order";
+    EXPECT_EQ(objects_in(veils("3")), 2u) << "A and the square";
+    EXPECT_EQ(veils("3").leaves(2).size(), 1u + 3);
+    // Few veils lie in their order, down to the size of a pixel.
+    EXPECT_LT(veils("1").leaves(500).size(), 60u);
 }
 
 TEST(ContextFree, TurnsThatDrawTheSameAreParts) {

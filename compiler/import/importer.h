@@ -30,6 +30,7 @@ struct ForeignFile {
     /// none. Texts stay valid.
     std::function<std::optional<FileId>(std::string_view name)> read_beside;
     WorkMeter* meter = nullptr; ///< counts the work; null: nobody does
+    std::uint64_t seed = 0;     ///< of random numbers that the translation draws
 
     /// Throws OutOfWork where the command allows no more. `price`: of a unit (ImportPrice).
     void work(std::uint64_t units, double price) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <utility>
 
 #include <fmt/format.h>
@@ -105,17 +106,18 @@ std::string model_stem(std::string_view path) {
     return parts.model.empty() ? std::string(stem_of(parts.file)) : plain_name(parts.model);
 }
 
-ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics, BesideOptions beside,
+ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics, TranslateOptions options,
                          WorkMeter* meter) {
+    const std::uint64_t seed = options.seed;
     const auto read_beside = [&sources, file,
-                              beside = std::move(beside)](std::string_view name) -> std::optional<FileId> {
+                              options = std::move(options)](std::string_view name) -> std::optional<FileId> {
         const std::string path = path_beside(sources.name(file), name);
-        if (!beside.root.empty() && !beside.files->lies_in(path, beside.root)) return std::nullopt;
+        if (!options.root.empty() && !options.files->lies_in(path, options.root)) return std::nullopt;
         std::string text;
-        if (!beside.files->check(path).ok() || !beside.files->read(path, text).ok()) return std::nullopt;
+        if (!options.files->check(path).ok() || !options.files->read(path, text).ok()) return std::nullopt;
         return sources.add(path, decoded_text(std::move(text), OtherBytes::windows_1252));
     };
-    const ForeignFile foreign{file, sources, diagnostics, read_beside, meter};
+    const ForeignFile foreign{file, sources, diagnostics, read_beside, meter, seed};
     foreign.work(foreign.text().size(), ImportPrice::byte);
     return foreign;
 }
@@ -169,9 +171,9 @@ std::optional<ForeignModel> find_model(const Importer& importer, const ForeignFi
 }
 
 std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& sources,
-                               Diagnostics& diagnostics, const BesideOptions& beside, WorkMeter* meter) {
+                               Diagnostics& diagnostics, const TranslateOptions& options, WorkMeter* meter) {
     if (!is_foreign(sources.name(file))) return file;
-    const ForeignFile foreign = foreign_file(file, sources, diagnostics, beside, meter);
+    const ForeignFile foreign = foreign_file(file, sources, diagnostics, options, meter);
     const Importer* const importer = importer_of(foreign);
     if (!importer) return std::nullopt;
     const std::optional<ForeignModel> found = find_model(*importer, foreign, model);

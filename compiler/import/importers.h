@@ -31,8 +31,8 @@ bool is_foreign(std::string_view file_name);
 std::string model_text(std::string_view file_name, std::string bytes);
 
 /// A file of `sources` for importers. Both must outlive it, and so must the meter. Charges the file as read.
-ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics, BesideOptions beside = {},
-                         WorkMeter* meter = nullptr);
+ForeignFile foreign_file(FileId file, SourceMap& sources, Diagnostics& diagnostics,
+                         TranslateOptions options = {}, WorkMeter* meter = nullptr);
 
 /// The importer that reads the file: one of its ending that knows the text, else any that knows it, with a
 /// note, else the only one of its ending. Null after the error that names the formats.
@@ -47,7 +47,7 @@ std::optional<ForeignModel> find_model(const Importer& importer, const ForeignFi
 /// in a foreign one, which becomes a file of `sources`. Nothing after an error. Throws OutOfWork where the
 /// meter allows no more.
 std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& sources,
-                               Diagnostics& diagnostics, const BesideOptions& beside = {},
+                               Diagnostics& diagnostics, const TranslateOptions& options = {},
                                WorkMeter* meter = nullptr);
 
 } // namespace graftal

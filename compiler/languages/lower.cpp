@@ -68,7 +68,8 @@ LoweredText lower_text(const std::string& name, std::string text, const LowerOpt
     std::optional<FileId> own;
     {
         WorkMeter meter(help.control, "import", 10'000);
-        own = translator.own_text(file, path.model, sources, diagnostics, {options.root, help.files}, &meter);
+        own = translator.own_text(file, path.model, sources, diagnostics,
+                                  {options.root, help.files, options.seed.value_or(0)}, &meter);
     }
     if (!own) return {};
     return lower_root(*own, name, options, sources, diagnostics, help);

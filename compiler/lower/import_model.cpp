@@ -96,8 +96,9 @@ std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering
     const ModelPath parts = translator.model_path(path);
     std::optional<FileId> file = read_file(use_span, parts.file, lowering);
     if (file)
-        file = translator.own_text(*file, parts.model, lowering.sources, lowering.diagnostics,
-                                   {lowering.options.root, lowering.help.files}, &lowering.meter);
+        file = translator.own_text(
+            *file, parts.model, lowering.sources, lowering.diagnostics,
+            {lowering.options.root, lowering.help.files, lowering.options.seed.value_or(0)}, &lowering.meter);
     return lowering.own_texts[path] = file;
 }
 

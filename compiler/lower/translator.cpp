@@ -12,7 +12,7 @@ Translator no_translator() {
             },
             .model_text = [](std::string_view,
                              std::string bytes) { return decoded_text(std::move(bytes), OtherBytes::kept); },
-            .own_text = [](FileId file, std::string_view, SourceMap&, Diagnostics&, const BesideOptions&,
+            .own_text = [](FileId file, std::string_view, SourceMap&, Diagnostics&, const TranslateOptions&,
                            WorkMeter*) { return std::optional(file); }};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,10 +18,11 @@ struct ModelPath {
     std::string model; ///< in a foreign file; "" where only the file is named
 };
 
-/// Rules for the files that lie beside a foreign one.
-struct BesideOptions {
-    std::string root{}; ///< they must lie in this folder; "": anywhere
+/// The context in which a foreign file is read.
+struct TranslateOptions {
+    std::string root{}; ///< files beside it must lie in this folder; "": anywhere
     const Files* files = &no_files();
+    std::uint64_t seed = 0; ///< of random numbers that a translation draws
 };
 
 /// The compiler's door to the files of other programs. Its caller hands in the functions;
@@ -34,7 +36,7 @@ struct Translator {
     /// name in it, which becomes a file of `sources`. Nothing after an error. Throws OutOfWork where the
     /// meter allows no more.
     std::optional<FileId> (*own_text)(FileId file, std::string_view model, SourceMap& sources,
-                                      Diagnostics& diagnostics, const BesideOptions& beside,
+                                      Diagnostics& diagnostics, const TranslateOptions& options,
                                       WorkMeter* meter);
 };
 

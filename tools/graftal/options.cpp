@@ -223,6 +223,7 @@ void add_import(CLI::App& app, Options& options) {
     app.add_option("--root", options.render.compile.lower.root,
                    "Read only files in this folder or below it, of those that FILE names")
         ->type_name("DIR");
+    add_seed(app, options);
     app.add_flag("-q,--quiet", options.quiet, "Print only errors and warnings");
     std::string formats = "Formats:\n";
     for (const Importer& importer : importers())

@@ -2,7 +2,6 @@
 
 #include "compiler/import/cfdg/parse/parser.h"
 #include "compiler/import/cfdg/unfolding.h"
-#include "compiler/import/cfdg/writer.h"
 #include "compiler/import/foreign_text.h"
 
 namespace graftal {
@@ -18,20 +17,8 @@ std::optional<Translation> translate(const ForeignFile& file, const ForeignModel
     const std::size_t errors = file.diagnostics.error_count();
     const Grammar grammar = parse(file);
     if (file.diagnostics.error_count() > errors) return std::nullopt;
-    // Words first: what the writer has none for is computed.
-    Diagnostics tried;
-    const ForeignFile attempt{file.file, file.sources, tried, file.read_beside, file.meter};
-    Writer writer(attempt, grammar);
-    Translation translation = writer.write();
-    if (tried.has_errors() || writer.shows_more()) {
-        translation = Unfolding(file, grammar).write();
-        if (file.diagnostics.error_count() > errors) return std::nullopt;
-        return translation;
-    }
-    for (const Diagnostic& said : tried.all())
-        (said.severity == Severity::warning ? file.diagnostics.warning(said.span, said.message)
-                                            : file.diagnostics.note(said.span, said.message))
-            .with_hint(said.hint);
+    Translation translation = Unfolding(file, grammar).write();
+    if (file.diagnostics.error_count() > errors) return std::nullopt;
     return translation;
 }
 

@@ -51,28 +51,33 @@ std::vector<std::size_t> from_the_leaves(const std::vector<std::vector<PaintedLi
 } // namespace
 
 PaintOrder::PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std::size_t root, double extent,
-                       bool translucent)
+                       bool translucent, bool endless)
     : heights_(objects.size()) {
     const std::vector<std::size_t> order = from_the_leaves(objects, root);
-    std::vector<Spread> spreads(objects.size());
+    std::vector<Spread> spreads(objects.size(), {1, 0}); // those of an object that contains itself stay so
     double least_depth = std::numeric_limits<double>::infinity();
     for (const std::size_t object : order) {
-        Spread& spread = spreads[object];
+        Spread spread;
         double painted = 0, called = 0, before = 0;
         for (const PaintedLine& line : objects[object]) {
             double& sum = line.is_call ? called : painted;
+            if (line.is_part) painted = called = std::max(painted, called);
             const Spread below = line.node == PaintedLine::none ? Spread{1, 0} : spreads[line.node];
             heights_[object].push_back(line.beside ? before : sum);
             before = heights_[object].back();
             if (!line.beside) sum += below.width;
+            if (line.is_part) called = painted;
             spread.levels = std::max(spread.levels, below.levels + (is_equal(line) ? 1 : 0));
             if (line.depth != 0) least_depth = std::min(least_depth, std::abs(line.depth));
         }
         spread.width = std::max({painted, called, 1.0});
-        if (spread.width <= most_width) continue;
-        for (double& number : heights_[object])
-            number *= most_width / spread.width;
-        spread.width = most_width;
+        if (spread.width > most_width) {
+            for (double& number : heights_[object])
+                number *= most_width / spread.width;
+            spread.width = most_width;
+            crowded_ = true;
+        }
+        spreads[object] = spread;
     }
     const double levels = spreads[root].levels + 1;
     const double level = std::min(spreads[root].width, most_lines / levels);
@@ -97,9 +102,15 @@ PaintOrder::PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std
     for (const std::size_t object : order)
         for (std::size_t i = 0; i < objects[object].size(); ++i) {
             const PaintedLine& line = objects[object][i];
-            heights_[object][i] =
-                gap * (heights_[object][i] + (is_equal(line) ? level : 0)) + size * line.log_shrunk;
+            // A shape of a size s lies at the height -log s; at 1 - s where the heights below it shrink too.
+            const double shrunk = endless ? 1 - std::exp(-line.log_shrunk) : line.log_shrunk;
+            heights_[object][i] = gap * (heights_[object][i] + (is_equal(line) ? level : 0)) + size * shrunk;
         }
+    gap_ = gap;
+    if (endless) {
+        top_ = 2 * size;
+        return;
+    }
     find_reach(0);
     if (std::isfinite(least_depth)) {
         const double range = std::max(reach[root].second - reach[root].first, gap);
@@ -109,7 +120,6 @@ PaintOrder::PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std
             for (std::size_t i = 0; i < objects[object].size(); ++i)
                 heights_[object][i] += depth * objects[object][i].depth;
     }
-    gap_ = gap;
     top_ = reach[root].second;
 }
 

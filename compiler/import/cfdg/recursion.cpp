@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -17,12 +15,8 @@ namespace graftal::cfdg {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
-/// Recursion that does not shrink is drawn so deep.
-constexpr int endless_generations = 300;
 /// The logarithm of a size that becomes smaller: an unfolding tells the sizes of all turns apart.
 constexpr double least_growth = -2e-6;
-/// The share of a size that no picture shows.
-constexpr double invisible = 1e-4;
 /// Recursion that shrinks less than by this factor is slow.
 const double slow_growth = std::log(0.85);
 /// The share of its own area that recursion draws again where it fills a picture.
@@ -32,62 +26,34 @@ constexpr std::size_t most_shapes = 150;
 
 } // namespace
 
-double growth_of(const Modification& modification, const Expressions& expressions) {
-    double growth = 0;
-    for (const Adjustment& adjustment : modification.adjustments) {
-        if (adjustment.word == "skew") return unknown;
-        if (adjustment.word == "trans") {
-            const Definition* const inner = expressions.modification(adjustment);
-            if (!inner || inner->value.change->adjustments.size() > 20) return unknown;
-            for (const Adjustment& part : inner->value.change->adjustments)
-                if (part.word == "trans") return unknown;
-            growth += growth_of(*inner->value.change, expressions);
-            continue;
-        }
-        if (adjustment.word != "s") continue;
-        double largest = 0;
-        for (std::size_t i = 0; i < adjustment.values.size() && i < 2; ++i) {
-            const std::optional<Interval> range = expressions.range(adjustment.values[i]);
-            if (!range) return unknown;
-            largest = std::max({largest, std::abs(range->least), std::abs(range->most)});
-        }
-        growth += std::log(std::max(largest, 1e-100));
-    }
-    return growth;
-}
-
-Recursion::Recursion(const Grammar& grammar, const Expressions& expressions)
+Recursion::Recursion(const Grammar& grammar, Expressions& expressions)
     : grammar_(grammar), expressions_(expressions) {
     call_passed();
     for (std::size_t shape = 0; shape < grammar_.shapes.size(); ++shape)
         for (const Rule& rule : grammar_.shapes[shape].rules)
             walk(shape, rule.body, 0);
     find_components();
-    find_limits();
-}
-
-std::optional<std::size_t> Recursion::index(const std::string& name) const {
-    return grammar_.shape(name, "");
+    find_rates();
 }
 
 /// The growth of the largest copy of a transform.
-double Recursion::growth_of_transform(const Element& element) const {
+double Recursion::growth_of_transform(const Element& element, const std::string& space) {
     double growth = -unknown;
     for (const Expr& change : element.arguments)
-        growth =
-            std::max(growth, change.kind == Expr::Kind::modification ? growth_of(*change.change, expressions_)
-                                                                     : unknown);
+        growth = std::max(growth, change.kind == Expr::Kind::modification
+                                      ? expressions_.growth(*change.change, space)
+                                      : unknown);
     return growth;
 }
 
 void Recursion::walk(std::size_t from, const Elements& elements, double growth) {
+    const std::string& space = grammar_.shapes[from].space;
     for (const Element& element : elements) {
-        double inner = growth + growth_of(element.modification, expressions_);
-        if (element.kind == Element::Kind::transform) inner += growth_of_transform(element);
+        double inner = growth + expressions_.growth(element.modification, space);
+        if (element.kind == Element::Kind::transform) inner += growth_of_transform(element, space);
         if (element.kind == Element::Kind::loop) {
             // The last copy is the largest where copies grow.
-            const double copies =
-                element.arguments.empty() ? 1 : expressions_.number(element.arguments[0]).value_or(100);
+            const double copies = expressions_.turns(element, space).value_or(100);
             const double step = inner - growth;
             inner = growth + (step > 0 ? step * std::max(1.0, copies) : 0);
         }
@@ -96,7 +62,6 @@ void Recursion::walk(std::size_t from, const Elements& elements, double growth) 
         for (const Case& one : element.cases)
             walk(from, one.body, growth);
         if (element.kind != Element::Kind::shape) continue;
-        const std::string& space = grammar_.shapes[from].space;
         if (const std::optional<std::size_t> to = grammar_.shape(element.name, space);
             to && !element.computed)
             call(from, *to, element, inner);
@@ -113,7 +78,8 @@ void Recursion::call(std::size_t from, std::size_t to, const Element& element, d
         const Expr& argument = element.arguments[i];
         const bool handed_on =
             argument.kind == Expr::Kind::name && from == to && i < own.size() && own[i].name == argument.text;
-        if (!handed_on && !expressions_.number(argument)) call.changes_parameters = true;
+        if (!handed_on && !expressions_.number(argument, grammar_.shapes[from].space))
+            call.changes_parameters = true;
     }
     for (const Adjustment& adjustment : element.modification.adjustments)
         call.changes_parameters = call.changes_parameters || adjustment.sets_target;
@@ -175,30 +141,25 @@ bool Recursion::fills(const std::vector<const Call*>& calls,
     return grown > filling_area;
 }
 
-bool Recursion::fades_slowly(std::size_t from) const {
+bool Recursion::is_endless(std::size_t from) const {
     std::vector<std::vector<std::size_t>> to(component_.size());
     for (const Call& call : calls_)
         to[call.from].push_back(call.to);
     std::vector<std::array<bool, 2>> seen(component_.size()); // by whether recursion leads there
     std::vector<std::pair<std::size_t, bool>> open = {{from, false}};
+    bool found = false;
     while (!open.empty()) {
         const auto [shape, below] = open.back();
         open.pop_back();
         if (std::exchange(seen[shape][below ? 1 : 0], true)) continue;
         const std::size_t component = component_[shape];
-        if (branches_[component] || (slow_[component] && below)) return true;
+        if (recurs_[component] && (!shrinks_[component] || changes_[component])) return false;
+        if (branches_[component] || (slow_[component] && below)) return false;
+        found = found || recurs_[component];
         for (const std::size_t next : to[shape])
             open.emplace_back(next, below || (recurs_[component] && component_[next] != component));
     }
-    return false;
-}
-
-std::vector<std::size_t> Recursion::from_the_leaves() const {
-    std::vector<std::size_t> order(grammar_.shapes.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    // Kosaraju's second walk finds components before those that they call.
-    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t shape) { return component_[shape]; });
-    return order;
+    return found;
 }
 
 void Recursion::mark_callers(std::vector<bool>& marked) const {
@@ -261,30 +222,30 @@ void Recursion::find_components() {
         }
         ++components;
     }
-    limits_.resize(components);
     shrinks_.assign(components, true);
     recurs_.assign(components, false);
     slow_.assign(components, false);
     branches_.assign(components, false);
+    changes_.assign(components, false);
 }
 
-void Recursion::find_limits() {
-    std::vector<std::vector<std::size_t>> members_of(limits_.size());
-    std::vector<std::vector<const Call*>> calls_within(limits_.size());
+void Recursion::find_rates() {
+    std::vector<std::vector<std::size_t>> members_of(shrinks_.size());
+    std::vector<std::vector<const Call*>> calls_within(shrinks_.size());
     for (std::size_t shape = 0; shape < component_.size(); ++shape)
         members_of[component_[shape]].push_back(shape);
     for (const Call& call : calls_)
         if (component_[call.from] == component_[call.to])
             calls_within[component_[call.from]].push_back(&call);
-    for (std::size_t component = 0; component < limits_.size(); ++component) {
+    for (std::size_t component = 0; component < shrinks_.size(); ++component) {
         const std::vector<const Call*>& inner = calls_within[component];
         std::map<std::size_t, std::size_t> place;
         for (const std::size_t member : members_of[component])
             place.emplace(member, place.size());
         const std::size_t n = place.size();
-        const bool changes = std::ranges::any_of(inner, &Call::changes_parameters);
         if (inner.empty()) continue;
         recurs_[component] = true;
+        changes_[component] = std::ranges::any_of(inner, &Call::changes_parameters);
         // The largest growth of any way from one to another (Floyd 1962; Warshall 1962).
         double largest = unknown;
         if (n <= most_shapes) {
@@ -305,11 +266,6 @@ void Recursion::find_limits() {
         shrinks_[component] = largest < least_growth;
         branches_[component] = inner.size() > n && fills(inner, place);
         slow_[component] = largest > slow_growth;
-        if (shrinks_[component] && !changes) continue;
-        limits_[component] = endless_generations;
-        if (!shrinks_[component]) continue;
-        const double steps = std::log(invisible) / largest * static_cast<double>(n);
-        limits_[component] = static_cast<int>(std::clamp(std::ceil(steps), 20.0, 2000.0));
     }
 }
 

@@ -45,7 +45,7 @@ template<typename Test> bool holds(const Elements& elements, const Test& test) {
 
 SceneWriter::SceneWriter(const ForeignFile& file, const Grammar& grammar)
     : file_(file), grammar_(grammar), evaluator_(file, grammar) {
-    for (const char* const taken : {"flat", "scene", "n"})
+    for (const char* const taken : {"flat", "scene"})
         names_.insert(taken);
     const auto fades = [](const Modification& modification) {
         return std::ranges::any_of(modification.adjustments, [](const Adjustment& adjustment) {

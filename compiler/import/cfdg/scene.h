@@ -17,10 +17,7 @@
 
 namespace graftal::cfdg {
 
-/// The distance by which the smallest shapes lie in front of the largest. A shape of scale s draws at lift *
-/// (1 - s).
-inline constexpr double lift = 0.02;
-/// State that all translations of a grammar share: its text, the scene, and the primitives.
+/// The text of a translation, its scene, and the primitives.
 class SceneWriter {
   protected:
     /// Both must outlive this.

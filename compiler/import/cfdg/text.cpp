@@ -64,14 +64,15 @@ std::string moves_text(const Affine& map) {
     const Vec3 at = map.translation;
     std::string text;
     const double size = std::hypot(m[0][0], m[0][1]);
+    const bool uniform = std::abs(m[2][2] - size) <= 1e-15 * size;
     const bool similar = std::abs(m[0][0] - m[1][1]) <= 1e-15 * size &&
-                         std::abs(m[0][1] + m[1][0]) <= 1e-15 * size && m[2][2] == 1;
+                         std::abs(m[0][1] + m[1][0]) <= 1e-15 * size && (m[2][2] == 1 || uniform);
     if (!similar)
         return fmt::format("  matrix: {}, {}, 0, {},  {}, {}, 0, {},  0, 0, {}, {}", shortest(m[0][0]),
                            shortest(m[1][0]), shortest(at.x), shortest(m[0][1]), shortest(m[1][1]),
                            shortest(at.y), shortest(m[2][2]), shortest(at.z));
     if (const std::string scale = tidy(size); scale != "1")
-        text += fmt::format("  scale: {0}, {0}, 1", scale);
+        text += uniform ? "  scale: " + scale : fmt::format("  scale: {0}, {0}, 1", scale);
     const double angle_deg = std::atan2(m[0][1], m[0][0]) * 180 / std::numbers::pi;
     if (angle_deg != 0) text += "  rotate: z, " + tidy(angle_deg);
     if (at != Vec3(0.0))
@@ -110,13 +111,17 @@ std::optional<std::string> ink_text(const std::vector<ColourStep>& steps, Target
     return text.empty() ? text : "  ink {" + text + " }";
 }
 
-std::vector<ColourStep> shortened(const std::vector<ColourStep>& steps) {
+bool is_plain(const std::vector<ColourStep>& steps) {
     using Kind = ColourStep::Kind;
-    const bool plain = std::ranges::all_of(steps, [](const ColourStep& step) {
+    return std::ranges::all_of(steps, [](const ColourStep& step) {
         const bool toward = step.kind == Kind::toward && step.channel != Channel::hue && step.amount >= 0;
         return step.kind == Kind::change || toward;
     });
-    if (!plain) return steps;
+}
+
+std::vector<ColourStep> shortened(const std::vector<ColourStep>& steps) {
+    using Kind = ColourStep::Kind;
+    if (!is_plain(steps)) return steps;
     std::array<Way, 4> ways;
     double turn = 0;
     for (const ColourStep& step : steps)

@@ -20,7 +20,10 @@ std::string moves_text(const Affine& map);
 /// change the colour. Nothing if a step leads away from a colour.
 std::optional<std::string> ink_text(const std::vector<ColourStep>& steps, Target& target);
 
-/// Fewer steps that do the same, where none looks at a target.
+/// Whether steps look at no target, and go no way around the hues.
+bool is_plain(const std::vector<ColourStep>& steps);
+
+/// Fewer steps that do the same, where they are plain.
 std::vector<ColourStep> shortened(const std::vector<ColourStep>& steps);
 
 } // namespace graftal::cfdg

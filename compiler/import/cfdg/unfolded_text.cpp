@@ -26,6 +26,11 @@ const std::string& Unfolding::name_of(std::size_t id) {
     const std::size_t number = ++named_[node.shape];
     return node.name = free_name(number == 1 ? shape : fmt::format("{}_{}", shape, number));
 }
+/// Whether a line draws a shape of rules, which is painted when its turn comes.
+bool Unfolding::is_call(const Line& line) const {
+    return line.master.empty() && !nodes_[line.node].part &&
+           !grammar_.shapes[nodes_[line.node].shape].is_path;
+}
 
 void Unfolding::find_order(std::size_t first) {
     instances_.assign(nodes_.size(), 0);
@@ -38,13 +43,14 @@ void Unfolding::find_order(std::size_t first) {
             painted.beside = line.beside;
             if (!line.master.empty() || !is_drawn(line)) continue; // too small to be seen
             painted.node = line.node;
-            painted.is_call = !grammar_.shapes[nodes_[line.node].shape].is_path;
+            painted.is_call = is_call(line);
+            painted.is_part = nodes_[line.node].part;
             if (painted.is_call) painted.log_shrunk = -std::log(size_of(line.map));
             ++instances_[line.node];
         }
     }
     const double extent = extent_ > 0 ? extent_ : 1;
-    order_.emplace(objects, first, extent, translucent_);
+    order_.emplace(objects, first, extent, translucent_, endless_);
     copy_step_ = order_->gap();
     camera_height_ = extent + 2 * order_->top();
 }
@@ -77,7 +83,7 @@ void Unfolding::write_node(std::size_t id, std::vector<std::size_t>& needed) {
         for (std::size_t i = lines.size(); i-- > 0;) {
             if (!is_drawn(lines[i])) continue;
             Affine own = lines[i].map;
-            own.linear[2] = {0, 0, 1};
+            own.linear[2] = {0, 0, endless_ && is_call(lines[i]) ? size_of(own) : 1};
             own.translation.z = order_->height(of, i);
             std::vector<ColourStep> all = colours;
             all.insert(all.end(), lines[i].colours.begin(), lines[i].colours.end());
@@ -102,7 +108,8 @@ void Unfolding::write_node(std::size_t id, std::vector<std::size_t>& needed) {
 /// long chain of objects.
 bool Unfolding::is_held(const Written& one) const {
     return one.line->master.empty() && instances_[one.line->node] == 1 &&
-           recursion_.recurs(nodes_[one.line->node].shape) && one.colours.size() <= most_steps_held;
+           recursion_.recurs(nodes_[one.line->node].shape) && !endless_ &&
+           one.colours.size() <= most_steps_held;
 }
 
 void Unfolding::write_line(std::size_t id, const Written& one, std::vector<std::size_t>& needed) {

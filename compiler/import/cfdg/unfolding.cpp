@@ -23,6 +23,8 @@ constexpr const char* fewer_shapes = "ask for less: fewer turns of its loops, su
 /// Most variants of a random shape: as many as .inst makes of a random object.
 constexpr std::size_t most_variants = 64;
 constexpr std::uint64_t most_trials = 20; ///< where chance draws nothing
+/// Turns of a loop that are not written one by one.
+constexpr double least_even_turns = 32, most_even_turns = 1e9;
 constexpr int most_generations = 2000;
 constexpr std::size_t most_nodes = 60'000;
 constexpr std::size_t most_unfolded_lines = 600'000;
@@ -53,9 +55,15 @@ std::string stretch_text(const Affine& map) {
 } // namespace
 
 Unfolding::Unfolding(const ForeignFile& file, const Grammar& grammar)
-    : SceneWriter(file, grammar), expressions_(file, grammar), recursion_(grammar, expressions_),
-      named_(grammar.shapes.size()) {
-    find_random();
+    : SceneWriter(file, grammar), chance_(grammar), expressions_(file, grammar, chance_),
+      recursion_(grammar, expressions_), random_(grammar.shapes.size()), named_(grammar.shapes.size()) {
+    for (std::size_t i = 0; i < grammar.shapes.size(); ++i) {
+        const Shape& shape = grammar.shapes[i];
+        random_[i] = shape.rules.size() > 1 || std::ranges::any_of(shape.rules, [&](const Rule& rule) {
+                         return chance_.decides(rule.body, shape.space);
+                     });
+    }
+    recursion_.mark_callers(random_);
 }
 
 Translation Unfolding::write() {
@@ -91,7 +99,6 @@ Translation Unfolding::write() {
         middle_and_half_ = {0.5 * (least_ + most_), glm::max(half, Vec3(0.05 * std::max(extent_, 1e-3)))};
     }
     if (file_.diagnostics.has_errors()) return std::move(out_);
-    if (first) find_order(*first);
     write_scene();
     if (first) {
         if (full_)
@@ -109,16 +116,33 @@ Translation Unfolding::write() {
 std::optional<std::size_t> Unfolding::unfold_from(const ShapeValue& shape, const Target& target,
                                                   const Affine& world) {
     std::optional<std::size_t> first;
+    const bool may_be_endless = !deep_ && recursion_.is_endless(grammar_.numbers.at(shape.name));
+    endless_ = may_be_endless && !translucent_;
     for (salt_ = 0; salt_ < most_trials && !drawn_ && file_.diagnostics.error_count() == 0; ++salt_) {
         const bool known = stretches_;
         first = unfold_once(shape, target, world);
-        // Some path depends on how it is stretched: so do those that lead to it.
-        if (stretches_ && !known) {
+        // Paths may depend on how they are stretched: so do the shapes that lead to them. Other shapes cover
+        // the canvas whatever their size, or recursion makes new ones for ever.
+        const bool compact = endless_ || std::ranges::any_of(nodes_, &Node::part);
+        if ((stretches_ && !known) || (fills_ && compact) || (full_ && endless_)) {
+            endless_ = false;
+            even_ = !stretches_ && !fills_;
             turns_ = colour_steps_ = 0;
             first = unfold_once(shape, target, world);
         }
         if (!random_[grammar_.numbers.at(shape.name)]) break;
     }
+    if (!first || file_.diagnostics.error_count() > 0) return first;
+    find_order(*first);
+    if (!may_be_endless || endless_ || fills_ || stretches_ || !order_->is_crowded()) return first;
+    // Veils lie in their order. Where there are more than heights tell apart, recursion has no end either.
+    for (const bool endless : {true, false}) {
+        endless_ = endless;
+        turns_ = colour_steps_ = 0;
+        first = unfold_once(shape, target, world);
+        if (!full_) break; // else recursion made new shapes for ever
+    }
+    if (first) find_order(*first);
     return first;
 }
 
@@ -134,8 +158,10 @@ std::optional<std::size_t> Unfolding::unfold_once(const ShapeValue& shape, const
     while (!open_.empty() && file_.diagnostics.error_count() == 0) {
         const auto [size, id] = open_.top();
         open_.pop();
+        if (nodes_[id].done) continue;
         // All others are smaller. A canvas of a size is as many pixels wide, if that is more than usual.
-        if (size < std::min(too_small * extent_, grammar_.size ? smallest_pixels : too_small * extent_))
+        if (!endless_ &&
+            size < std::min(too_small * extent_, grammar_.size ? smallest_pixels : too_small * extent_))
             break;
         if (lines_ > most_unfolded_lines || turns_ > most_loop_turns) {
             full_ = true;
@@ -144,96 +170,6 @@ std::optional<std::size_t> Unfolding::unfold_once(const ShapeValue& shape, const
         unfold(id);
     }
     return first;
-}
-
-// Chance
-
-/// Functions that draw, or call others that do.
-void Unfolding::find_random_functions() {
-    std::map<const Definition*, std::vector<const Definition*>> callers;
-    std::vector<const Definition*> open;
-    for (const Definition& function : grammar_.definitions) {
-        if (!function.is_function) continue;
-        if (is_random(function.value, function.space)) open.push_back(&function);
-        const auto walk = [&](const auto& self, const Expr& expression) -> void {
-            if (const Definition* const called = function_named(expression, function.space))
-                callers[called].push_back(&function);
-            for (const Expr& operand : expression.operands)
-                self(self, operand);
-        };
-        walk(walk, function.value);
-    }
-    while (!open.empty()) {
-        const Definition* const function = open.back();
-        open.pop_back();
-        if (random_functions_.insert(function).second)
-            open.insert(open.end(), callers[function].begin(), callers[function].end());
-    }
-}
-
-const Definition* Unfolding::function_named(const Expr& expression, const std::string& space) const {
-    if (expression.kind != Expr::Kind::call) return nullptr;
-    const Definition* const found = in_spaces(
-        expression.text, space, [&](const std::string& name) { return expressions_.definition(name); });
-    return found && found->is_function ? found : nullptr;
-}
-
-bool Unfolding::is_random(const Expr& expression, const std::string& space) const {
-    if (expression.kind == Expr::Kind::binary && (expression.text == ".." || expression.text == "+/-"))
-        return true;
-    if (expression.kind == Expr::Kind::call && expression.text.starts_with("rand") &&
-        expression.text != "rand_static")
-        return true;
-    if (const Definition* const function = function_named(expression, space);
-        function && random_functions_.contains(function))
-        return true;
-    if (expression.change && is_random(*expression.change, space)) return true;
-    return std::ranges::any_of(expression.operands,
-                               [&](const Expr& operand) { return is_random(operand, space); });
-}
-
-bool Unfolding::is_random(const Modification& modification, const std::string& space) const {
-    return std::ranges::any_of(modification.adjustments, [&](const Adjustment& adjustment) {
-        return std::ranges::any_of(adjustment.values,
-                                   [&](const Expr& value) { return is_random(value, space); });
-    });
-}
-
-bool Unfolding::is_random(const Elements& elements, const std::string& space) const {
-    const auto value = [&](const Expr& expression) { return is_random(expression, space); };
-    return std::ranges::any_of(elements, [&](const Element& element) {
-        return std::ranges::any_of(element.arguments, value) || is_random(element.modification, space) ||
-               is_random(element.body, space) || is_random(element.other, space) ||
-               std::ranges::any_of(element.cases,
-                                   [&](const Case& one) { return is_random(one.body, space); });
-    });
-}
-
-void Unfolding::find_random() {
-    find_random_functions();
-    random_.resize(grammar_.shapes.size());
-    for (std::size_t i = 0; i < grammar_.shapes.size(); ++i) {
-        const Shape& shape = grammar_.shapes[i];
-        random_[i] = shape.rules.size() > 1 || std::ranges::any_of(shape.rules, [&](const Rule& rule) {
-                         return is_random(rule.body, shape.space);
-                     });
-    }
-    recursion_.mark_callers(random_);
-}
-
-const Rule& Unfolding::rule_of(const Shape& shape) {
-    if (shape.rules.size() == 1) return shape.rules.front();
-    double percents = 0, weights = 0;
-    for (const Rule& rule : shape.rules)
-        (rule.percent ? percents : weights) += rule.weight.value_or(1);
-    const double plain = percents > 0 && weights > 0 ? std::max(0.0, 100 - percents) / weights : 1;
-    double all = percents + weights * plain;
-    double drawn = evaluator_.draws.unit() * all;
-    for (const Rule& rule : shape.rules) {
-        drawn -= rule.weight.value_or(1) * (rule.percent ? 1 : plain);
-        if (drawn < 0) return rule;
-    }
-    return shape.rules.back();
 }
 
 // Nodes
@@ -259,22 +195,30 @@ std::optional<std::size_t> Unfolding::node_for(const ShapeValue& value, const Ta
     for (const double part : target)
         key += fmt::format("{:a},", part);
     if (left) key += fmt::format("n{}", *left);
-    // Recursion ends where its shapes are too small, so that those of each size are others.
+    // Most recursion ends where its shapes are too small, so that those of each size are others.
     const double size = size_of(world);
-    if (recursion_.recurs(shape))
+    if (recursion_.recurs(shape) && !endless_)
         key += fmt::format("s{}", std::llround(1e6 * std::log(std::max(size, 1e-100))));
-    if (const double depth = world.linear[2][2]; depth != 1) key += fmt::format("z{:a}", depth);
+    if (const double depth = world.linear[2][2]; depth != 1 && !endless_) key += fmt::format("z{:a}", depth);
     if (stretches_) key += stretch_text(world);
     std::vector<std::size_t>& known = known_[key];
     const std::size_t variants = random_[shape] ? most_variants : 1;
-    if (known.size() >= variants) return known[random_[shape] ? uses_[key]++ % variants : 0];
+    if (known.size() >= variants) {
+        const std::size_t id = known[random_[shape] ? uses_[key]++ % variants : 0];
+        if (Node& node = nodes_[id]; size > node.size && !node.done) {
+            node.size = size;
+            node.world = world;
+            open_.emplace(size, id);
+        }
+        return id;
+    }
     if (nodes_.size() >= most_nodes) {
         full_ = true;
         if (known.empty()) return std::nullopt;
         return known.front();
     }
     Node node{.shape = shape, .value = value, .target = target, .left = left, .world = world, .size = size};
-    node.seed = hash_of(key) + known.size() + 1000 * salt_;
+    node.seed = hash_of(key) + known.size() + 1000 * salt_ + evaluator_.seed;
     known.push_back(nodes_.size());
     // The first shape, and paths, are drawn whatever their size.
     const bool certain = !from || grammar_.shapes[shape].is_path;
@@ -292,7 +236,7 @@ void Unfolding::unfold(std::size_t id) {
     if (shape.rules.empty()) return fail(shape.span, fmt::format("'{}' has no rule", shape.name));
     const Surroundings at{std::move(*values), shape.space, &shape};
     if (shape.is_path) return unfold_path(id, at);
-    expand(rule_of(shape).body, at, {id, {}});
+    expand(evaluator_.rule(shape).body, at, {id, {}});
 }
 
 void Unfolding::unfold_path(std::size_t id, const Surroundings& at) {
@@ -369,6 +313,16 @@ void Unfolding::expand_loop(const Element& element, Surroundings at, Under under
     const std::optional<LoopBounds> bounds = evaluator_.bounds(element, at);
     if (!bounds) return;
     double index = bounds->begin;
+    const double turns = bounds->turns();
+    if (turns >= least_even_turns && turns <= most_even_turns && is_even(element, at.space)) {
+        const std::optional<Change> change = evaluator_.change(element.modification, at);
+        if (!change) return;
+        if (std::abs(size_of(change->map) - 1) < 1e-9 && change->map.linear[2][2] == 1 &&
+            is_plain(change->colours)) {
+            under.change = expand_even(element, at, under, *change, turns);
+            index += turns * bounds->step;
+        }
+    }
     for (; bounds->goes_on(index); index += bounds->step) {
         if (file_.diagnostics.error_count() > 0) return;
         file_.work(1, ImportPrice::unfolded);
@@ -390,6 +344,74 @@ void Unfolding::expand_loop(const Element& element, Surroundings at, Under under
     }
     if (!element.name.empty()) at.values.insert_or_assign(element.name, Value::of(index));
     expand(element.other, at, under);
+}
+/// Whether the turns of a loop draw the same.
+bool Unfolding::is_even(const Element& loop, const std::string& space) const {
+    const auto fixed = [&](const auto& self, const Elements& elements) -> bool {
+        return std::ranges::all_of(elements, [&](const Element& element) {
+            const std::optional<std::size_t> shape = grammar_.shape(element.name, space);
+            if (element.kind == Element::Kind::shape &&
+                (element.computed || (shape ? random_[*shape] : primitive_named(element.name).empty())))
+                return false;
+            return self(self, element.body) && self(self, element.other) &&
+                   std::ranges::all_of(element.cases, [&](const Case& one) { return self(self, one.body); });
+        });
+    };
+    const auto is_index = [&](const Expr& expression) {
+        return expression.kind == Expr::Kind::name && expression.text == loop.name;
+    };
+    return even_ && nodes_.size() < most_nodes && !chance_.decides(loop.modification, space) &&
+           !chance_.decides(loop.body, space) && fixed(fixed, loop.body) &&
+           (loop.name.empty() || (!any_part(loop.modification, is_index) && !any_part(loop.body, is_index)));
+}
+
+/// Draws parts of 1, 2, 4 and more turns, each of which draws the one before it twice. Gives the change after
+/// all turns.
+Change Unfolding::expand_even(const Element& loop, const Surroundings& at, const Under& under, Change step,
+                              double turns) {
+    std::size_t part = part_of(under.node, under.change);
+    expand(loop.body, at, {part, {}});
+    const auto place_part = [&](std::size_t in, const Change& change) {
+        if (!check_bounds(change.map, loop.span)) return;
+        add_line(in, {.node = part, .map = change.map, .colours = change.colours, .span = loop.span});
+        see(nodes_[in].world * change.map);
+    };
+    const auto sum = [](const Change& first, const Change& second) {
+        Change both = first;
+        both.add(second);
+        both.colours = shortened(both.colours);
+        return both;
+    };
+    Change change = under.change;
+    for (; turns >= 1; turns = std::floor(turns / 2)) {
+        if (std::fmod(turns, 2) == 1) {
+            place_part(under.node, change);
+            change = sum(change, step);
+        }
+        if (turns < 2) break;
+        const std::size_t twice = part_of(part, {});
+        place_part(twice, {});
+        place_part(twice, step);
+        step = sum(step, step);
+        part = twice;
+    }
+    return change;
+}
+
+/// A new object of lines of the rule of a node.
+std::size_t Unfolding::part_of(std::size_t id, const Change& change) {
+    const Node& of = nodes_[id];
+    Node part{.shape = of.shape,
+              .value = of.value,
+              .target = of.target,
+              .left = of.left,
+              .world = of.world * change.map,
+              .size = of.size,
+              .done = true,
+              .part = true};
+    ink_text(change.colours, part.target);
+    nodes_.push_back(std::move(part));
+    return nodes_.size() - 1;
 }
 
 void Unfolding::expand_transform(const Element& element, const Surroundings& at, const Under& under) {
@@ -420,6 +442,12 @@ void Unfolding::expand_transform(const Element& element, const Surroundings& at,
     }
 }
 
+bool Unfolding::check_bounds(const Affine& map, Span span) {
+    const bool inside =
+        is_finite(map) && largest_entry(map.linear) <= 1e50 && largest_entry(map.translation) <= 1e50;
+    if (!inside) fail(span, "this grows beyond all bounds");
+    return inside;
+}
 void Unfolding::place(const Element& element, const Surroundings& at, const Under& under) {
     const std::optional<ShapeValue> shape = evaluator_.shape(element, at);
     const std::optional<Change> own = shape ? evaluator_.change(element.modification, at) : std::nullopt;
@@ -437,9 +465,7 @@ void Unfolding::place(const Element& element, const Surroundings& at, const Unde
     const bool fills = primitive_shape && primitive_named(shape->name).empty();
     const double size = size_of(change.map);
     if (!(size > 1e-90)) return; // nothing is seen of it
-    if (!is_finite(change.map) || largest_entry(change.map.linear) > 1e50 ||
-        largest_entry(change.map.translation) > 1e50)
-        return fail(element.span, "this grows beyond all bounds");
+    if (!check_bounds(change.map, element.span)) return;
     Target target = nodes_[under.node].target;
     if (!ink_text(change.colours, target))
         return fail(element.span, "this changes a colour away from another");

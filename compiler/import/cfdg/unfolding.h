@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/import/cfdg/evaluate/chance.h"
 #include "compiler/import/cfdg/evaluate/expression.h"
 #include "compiler/import/cfdg/paint_order.h"
 #include "compiler/import/cfdg/parse/ast.h"
@@ -19,9 +20,9 @@
 namespace graftal::cfdg {
 
 /// The `.inst` of a grammar whose numbers are known: an object for each shape with each of its arguments, and
-/// up to 64 objects where chance decides. Largest shapes come first, and what no picture shows is left out,
-/// as Context Free does. This translates whatever can be computed; `Writer` is for grammars that .inst has
-/// words for.
+/// up to 64 objects where chance decides. Recursion that draws the same at all sizes has no end: its objects
+/// hold themselves. In other grammars, largest shapes come first, and shapes that no picture shows are left
+/// out, as Context Free does.
 class Unfolding : private SceneWriter {
   public:
     Unfolding(const ForeignFile& file, const Grammar& grammar);
@@ -51,6 +52,7 @@ class Unfolding : private SceneWriter {
         std::string name; ///< of its object, if it becomes one
         std::vector<Line> lines;
         bool done = false;
+        bool part = false; ///< turns of a loop of the shape's rule, and no shape
     };
 
     /// The context of the lines of a rule.
@@ -59,12 +61,6 @@ class Unfolding : private SceneWriter {
         Change change;
     };
 
-    void find_random();
-    void find_random_functions();
-    const Definition* function_named(const Expr& expression, const std::string& space) const;
-    bool is_random(const Expr& expression, const std::string& space) const;
-    bool is_random(const Modification& modification, const std::string& space) const;
-    bool is_random(const Elements& elements, const std::string& space) const;
     /// The node for a shape, which may be new; -1 where it has no generations left.
     std::optional<std::size_t> node_for(const ShapeValue& value, const Target& target,
                                         std::optional<std::size_t> from, const Affine& world);
@@ -74,9 +70,14 @@ class Unfolding : private SceneWriter {
                                            const Affine& world);
     void unfold(std::size_t id);
     void unfold_path(std::size_t id, const Surroundings& at);
-    const Rule& rule_of(const Shape& shape);
     void expand(const Elements& elements, Surroundings at, const Under& under);
     void expand_loop(const Element& element, Surroundings at, Under under);
+    bool is_even(const Element& loop, const std::string& space) const;
+    Change expand_even(const Element& loop, const Surroundings& at, const Under& under, Change step,
+                       double turns);
+    std::size_t part_of(std::size_t id, const Change& change);
+    bool check_bounds(const Affine& map, Span span);
+    bool is_call(const Line& line) const;
     void expand_transform(const Element& element, const Surroundings& at, const Under& under);
     void place(const Element& element, const Surroundings& at, const Under& under);
     void add_line(std::size_t id, Line line);
@@ -98,9 +99,9 @@ class Unfolding : private SceneWriter {
     void write_line(std::size_t id, const Written& one, std::vector<std::size_t>& needed);
     bool is_held(const Written& one) const;
 
+    Chance chance_;
     Expressions expressions_;
     Recursion recursion_;
-    std::set<const Definition*> random_functions_;
     std::vector<bool> random_; ///< by shape: whether chance decides in it or below it
     std::vector<Node> nodes_;
     std::map<std::string, std::vector<std::size_t>> known_;    ///< nodes by shape, arguments and target
@@ -112,6 +113,8 @@ class Unfolding : private SceneWriter {
     std::size_t lines_ = 0, turns_ = 0, colour_steps_ = 0, written_ = 0;
     bool full_ = false, fills_ = false, noted_ = false, drawn_ = false;
     bool stretches_ = false; ///< some path depends on how its place stretches
+    bool even_ = true;       ///< turns of loops that draw the same may be parts
+    bool endless_ = false;   ///< all recursion has no end: its shapes hold themselves
     std::uint64_t salt_ = 0; ///< of all random numbers
     std::optional<PaintOrder> order_;
     std::vector<std::uint32_t> instances_; ///< of each node, in others

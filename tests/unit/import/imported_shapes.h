@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,9 +16,11 @@ namespace graftal::testing {
 
 /// A foreign text, translated and compiled, and what it draws.
 struct ImportedShapes {
-    ImportedShapes(const std::string& name, const std::string& text) {
+    ImportedShapes(const std::string& name, const std::string& text, std::uint64_t seed = 0) {
         const FileId file = sources.add(name, text);
-        const ForeignFile foreign = foreign_file(file, sources, diagnostics);
+        TranslateOptions translate;
+        translate.seed = seed;
+        const ForeignFile foreign = foreign_file(file, sources, diagnostics, translate);
         const Importer* const importer = importer_of(foreign);
         if (!importer) return;
         const std::vector<ForeignModel> models = importer->models(foreign);

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -102,15 +103,40 @@ TEST_F(Use, models_of_other_programs_have_parts_where_their_translations_have) {
     write("tree.es", "twig\nrule twig md 3 > leaf { box { y 1 } twig }\nrule leaf { sphere }");
     write("tile.cfdg",
           "startshape A\nshape A { B(2) [] SQUARE [] }\nshape B(n) { loop (n) [x 1] CIRCLE [] }");
-    write("a.inst", "use t = \"tree.es\" use c = \"tile.cfdg\" object a { t.leaf, c.B(3) }");
+    write("a.inst", "use t = \"tree.es\" use c = \"tile.cfdg\" object a { t.leaf, c.B }");
     lower("a.inst");
     ASSERT_TRUE(graph_) << errors();
     EXPECT_EQ(object("t.leaf").instances.size(), 1u);
-    EXPECT_EQ(object("c.B(3)").instances.size(), 3u);
+    EXPECT_EQ(object("c.B").instances.size(), 2u);
     write("lines.ls", "2\n90\n10\nF\nF=FF\n@\n");
     write("b.inst", "use l = \"lines.ls\" object b { l.F }");
     lower("b.inst");
     EXPECT_THAT(errors(), HasSubstr("'l.F'"));
+}
+
+// A grammar of one line that begins with another shape gives a part of any arguments.
+TEST_F(Use, parts_of_grammars_take_arguments_by_a_start_of_their_own) {
+    write("tile.cfdg",
+          "startshape A\nshape A { B(2) [] SQUARE [] }\nshape B(n) { loop (n) [x 1] CIRCLE [] }");
+    write("three.cfdg", "startshape B(3)\nimport tile.cfdg\n");
+    write("a.inst", "use c = \"three.cfdg\" object a { c }");
+    lower("a.inst");
+    ASSERT_TRUE(graph_) << errors();
+    EXPECT_EQ(object("c.B").instances.size(), 3u);
+}
+
+TEST_F(Use, a_seed_is_that_of_used_grammars_too) {
+    write("dot.cfdg", "startshape A\nshape A { SQUARE [x (rand(1))] }");
+    write("a.inst", "use c = \"dot.cfdg\" object a { c.A }");
+    const auto place = [&](std::optional<std::uint64_t> seed) {
+        LowerOptions options;
+        options.seed = seed;
+        lower("a.inst", options);
+        EXPECT_TRUE(graph_) << errors();
+        return object("c.A").instances.at(0).parent_from_child.translation.x;
+    };
+    EXPECT_EQ(place(0), place({}));
+    EXPECT_GT(std::abs(place(7) - place({})), 1e-3);
 }
 
 TEST_F(Use, models_of_other_programs_are_read_by_the_translator_that_is_handed_in) {
@@ -122,7 +148,7 @@ TEST_F(Use, models_of_other_programs_are_read_by_the_translator_that_is_handed_i
     EXPECT_THAT(errors(), HasSubstr("names of models end in .lsys, .rifs or .inst"));
 
     translator_.own_text = [](FileId file, std::string_view, SourceMap& sources, Diagnostics&,
-                              const BesideOptions&, WorkMeter*) -> std::optional<FileId> {
+                              const TranslateOptions&, WorkMeter*) -> std::optional<FileId> {
         if (!sources.name(file).ends_with(".es")) return file;
         return sources.add_translation("tree.inst", "object tree { sphere, cube }\n", file, {});
     };

@@ -49,7 +49,8 @@ class Importing {
     }
 
     int import_file(WorkMeter& meter) {
-        const std::string& root = options_.render.compile.lower.root;
+        const LowerOptions& lower = options_.render.compile.lower;
+        const std::string& root = lower.root;
         if (!is_foreign(path_.file)) {
             found_.diagnostics.error(Span(),
                                      fmt::format("'{}' is of no format that graftal imports", path_.file));
@@ -63,8 +64,8 @@ class Importing {
         found_.status = read_text(path_.file, text);
         if (!found_.status.ok()) return exit_environment;
         const FileId file = found_.sources.add(path_.file, model_text(path_.file, std::move(text)));
-        const ForeignFile foreign =
-            foreign_file(file, found_.sources, found_.diagnostics, {root, &disk_files()}, &meter);
+        const ForeignFile foreign = foreign_file(file, found_.sources, found_.diagnostics,
+                                                 {root, &disk_files(), lower.seed.value_or(0)}, &meter);
         const Importer* const importer = importer_of(foreign);
         if (!importer) return exit_fault;
         if (path_.model.empty() && output_.ends_with('/')) return import_all(*importer, foreign);

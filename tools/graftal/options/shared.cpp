@@ -56,6 +56,13 @@ std::optional<std::string> pass_named(const std::string& text, bool all_allowed)
     throw CLI::ValidationError(fmt::format("there is no pass '{}' ({})", text, choices(text, names)));
 }
 
+void add_seed(CLI::App& app, Options& options) {
+    add_swept(
+        app, options, "--seed", "N", "Seed of random models", "a whole number",
+        [](const std::string& text) { return parse_whole(text, 0, UINT64_MAX); }, parse_seed_sweep,
+        [&](std::uint64_t seed) { options.render.compile.lower.seed = seed; });
+}
+
 void add_common(CLI::App& app, Options& options) {
     StageOptions& compile = options.render.compile;
     constexpr std::uint64_t most_steps = 4'000'000'000;
@@ -95,10 +102,7 @@ void add_common(CLI::App& app, Options& options) {
                                                       "and seed (may be repeated)")
         ->allow_extra_args(false)
         ->type_name(sweeps ? "NAME=VALUE[..VALUE[:STEP]]" : "NAME=VALUE");
-    add_swept(
-        app, options, "--seed", "N", "Seed of random models", "a whole number",
-        [](const std::string& text) { return parse_whole(text, 0, UINT64_MAX); }, parse_seed_sweep,
-        [&](std::uint64_t seed) { compile.lower.seed = seed; });
+    add_seed(app, options);
     add_value(
         app, "--root", "FOLDER",
         "Read models, and the models and pictures that they name, only from this folder; graftal resolves "

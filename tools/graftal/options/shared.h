@@ -28,6 +28,8 @@ std::optional<std::string> pass_named(const std::string& text, bool all_allowed)
 
 /// The file of the model.
 void add_model(CLI::App& app, Options& options);
+/// The seed of random numbers.
+void add_seed(CLI::App& app, Options& options);
 /// Options of every command that reads a model.
 void add_common(CLI::App& app, Options& options);
 /// Options of commands that look at the model from a camera.

@@ -151,8 +151,8 @@ std::optional<Change> Evaluator::change(const Modification& modification, const 
     if (made.colours.size() > most_colour_steps)
         return fail(modification.span, "this changes the colour too often");
     // A target changes behind the colours that go to it.
-    std::ranges::stable_partition(
-        made.colours, [](const ColourStep& step) { return step.kind != ColourStep::Kind::target; });
+    std::stable_partition(made.colours.begin(), made.colours.end(),
+                          [](const ColourStep& step) { return step.kind != ColourStep::Kind::target; });
     return made;
 }
 

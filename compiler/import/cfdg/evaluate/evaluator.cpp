@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "compiler/import/cfdg/evaluate/functions.h"
 #include "compiler/support/counter_random.h"
-#include "compiler/support/hue.h"
 
 namespace graftal::cfdg {
 
@@ -18,7 +16,6 @@ namespace {
 constexpr int deepest_expressions = 1000; ///< expressions within expressions, through functions too
 constexpr std::size_t most_evaluations = 100'000'000; ///< expressions that are evaluated
 constexpr std::size_t longest_vector = 10'000;
-constexpr double endless = 1e38;
 
 /// Number of numbers that a parameter of this type holds.
 std::size_t numbers_of_type(std::string_view type) {
@@ -179,7 +176,7 @@ std::optional<Value> Evaluator::global(const Definition& definition) {
     if (const auto known = globals_.find(definition.name); known != globals_.end()) return known->second;
     if (!open_.insert(definition.name).second)
         return fail(definition.span, fmt::format("'{}' depends on itself", definition.name));
-    const Draws before = std::exchange(draws, Draws(CounterRandom::scrambled(definition.span.begin)));
+    const Draws before = std::exchange(draws, Draws(CounterRandom::scrambled(definition.span.begin + seed)));
     std::optional<Value> result = value(definition.value, {.space = definition.space});
     draws = before;
     open_.erase(definition.name);
@@ -363,88 +360,19 @@ std::optional<Value> Evaluator::select(const Expr& expression, const Surrounding
     return value(*parts[1 + static_cast<std::size_t>(std::clamp(std::floor(*index), 0.0, last))], at);
 }
 
-std::optional<Value> Evaluator::of_numbers(const Expr& expression, const std::vector<double>& n) {
-    const std::string& name = expression.text;
-    const auto finite = [&](double made) -> std::optional<Value> {
-        if (std::isfinite(made)) return Value::of(made);
-        return fail(expression.span, fmt::format("'{}' has no value here", name));
-    };
-    const auto whole = [&](std::size_t i) {
-        return static_cast<std::uint64_t>(std::clamp(n[i], 0.0, 0x1p62));
-    };
-    const std::size_t count = n.size();
-    if (name.starts_with("rand")) return random(expression, n);
-    if (count == 0 && (name == "ftime" || name == "frame")) {
-        const Definition* const time = definition(name == "ftime" ? "CF::FrameTime" : "CF::Frame", "");
-        return time ? global(*time) : Value::of(0);
+const Rule& Evaluator::rule(const Shape& shape) {
+    if (shape.rules.size() == 1) return shape.rules.front();
+    double percents = 0, weights = 0;
+    for (const Rule& rule : shape.rules)
+        (rule.percent ? percents : weights) += rule.weight.value_or(1);
+    const double plain = percents > 0 && weights > 0 ? std::max(0.0, 100 - percents) / weights : 1;
+    double all = percents + weights * plain;
+    double drawn = draws.unit() * all;
+    for (const Rule& rule : shape.rules) {
+        drawn -= rule.weight.value_or(1) * (rule.percent ? 1 : plain);
+        if (drawn < 0) return rule;
     }
-    if (name == "infinity") return Value::of(count == 1 && n[0] < 0 ? -endless : endless);
-    if (const auto plain = plain_functions().find(name); plain != plain_functions().end() && count == 1)
-        return finite(plain->second(n[0]));
-    if (count == 1 && name == "factorial") return finite(std::round(std::tgamma(std::floor(n[0]) + 1)));
-    if (count == 1 && name == "isNatural") return Value::of(n[0] >= 0 && n[0] == std::floor(n[0]));
-    if (count == 2) {
-        if (name == "atan2") return finite(std::atan2(n[0], n[1]) * 180 / std::numbers::pi);
-        if (name == "mod") return finite(std::fmod(n[0], n[1]));
-        if (name == "abs") return Value::of(std::abs(n[0] - n[1]));
-        if ((name == "div" || name == "divides") && whole(1) > 0)
-            return Value::of(static_cast<double>(
-                name == "div" ? whole(0) / whole(1) : static_cast<std::uint64_t>(whole(0) % whole(1) == 0)));
-        if (name == "bitor") return Value::of(static_cast<double>(whole(0) | whole(1)));
-        if (name == "bitand") return Value::of(static_cast<double>(whole(0) & whole(1)));
-        if (name == "bitxor") return Value::of(static_cast<double>(whole(0) ^ whole(1)));
-        if (name == "bitleft" && n[1] < 52)
-            return Value::of(static_cast<double>((whole(0) << whole(1)) & 0xfffffffffffffULL));
-        if (name == "bitright" && n[1] < 64) return Value::of(static_cast<double>(whole(0) >> whole(1)));
-    }
-    if (count > 0 && name == "min") return Value::of(*std::ranges::min_element(n));
-    if (count > 0 && name == "max") return Value::of(*std::ranges::max_element(n));
-    if (name == "dot" && count >= 2 && count % 2 == 0) {
-        double sum = 0;
-        for (std::size_t i = 0; i < count / 2; ++i)
-            sum += n[i] * n[i + count / 2];
-        return finite(sum);
-    }
-    if (name == "cross" && count == 6)
-        return Value{
-            .numbers = {n[1] * n[5] - n[2] * n[4], n[2] * n[3] - n[0] * n[5], n[0] * n[4] - n[1] * n[3]}};
-    if (name == "vec" && count >= 2 && n[0] >= 1 && n[0] <= 1000) {
-        Value result;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(n[0]); ++i)
-            result.numbers.push_back(n[1 + i % (count - 1)]);
-        return result;
-    }
-    if (name == "hsb2rgb" && count == 3) {
-        const Rgb rgb = rgb_from_hsv(n[0], n[1], n[2]);
-        return Value{.numbers = {rgb.r, rgb.g, rgb.b}};
-    }
-    if (name == "rgb2hsb" && count == 3) {
-        const auto [most, least] = std::pair(std::max({n[0], n[1], n[2]}), std::min({n[0], n[1], n[2]}));
-        if (most - least < 1e-12) return Value{.numbers = {0, 0, most}};
-        const double sector = most == n[0]   ? (n[1] - n[2]) / (most - least)
-                              : most == n[1] ? 2 + (n[2] - n[0]) / (most - least)
-                                             : 4 + (n[0] - n[1]) / (most - least);
-        return Value{.numbers = {std::fmod(60 * sector + 360, 360), (most - least) / most, most}};
-    }
-    if (plain_functions().contains(name) || name == "min" || name == "max" || name == "mod")
-        return fail(expression.span, fmt::format("'{}' takes another number of arguments", name));
-    return fail(expression.span, fmt::format("the function '{}' is not translated", name));
-}
-
-std::optional<Value> Evaluator::random(const Expr& expression, const std::vector<double>& n) {
-    const std::string& name = expression.text;
-    if (name == "rand" || name == "randint" || name == "rand_static") {
-        if (n.size() > 2) return fail(expression.span, fmt::format("'{}' takes at most two numbers", name));
-        const double a = n.size() == 2 ? n[0] : 0, b = n.empty() ? (name == "randint" ? 2 : 1) : n.back();
-        const double k =
-            name == "rand_static"
-                ? CounterRandom::unit(CounterRandom::scrambled(expression.span.begin)) // one for each place
-                : draws.unit();
-        const double drawn = std::min(a, b) + k * std::abs(b - a);
-        return Value::of(name == "randint" ? std::floor(drawn) : drawn);
-    }
-    if (const std::optional<double> drawn = draws.distribution(name, n)) return Value::of(*drawn);
-    return fail(expression.span, fmt::format("'{}' is not translated with these numbers", name));
+    return shape.rules.back();
 }
 
 std::optional<Value> Evaluator::shape_value(const Expr& expression, std::string_view name,

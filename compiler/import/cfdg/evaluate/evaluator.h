@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -10,6 +13,7 @@
 #include "compiler/import/cfdg/evaluate/value.h"
 #include "compiler/import/cfdg/parse/ast.h"
 #include "compiler/import/importer.h"
+#include "compiler/support/counter_random.h"
 
 namespace graftal::cfdg {
 
@@ -24,13 +28,18 @@ struct LoopBounds {
     double begin = 0, end = 0, step = 1;
 
     bool goes_on(double index) const { return step > 0 ? index < end - 1e-9 : index > end + 1e-9; }
+    double turns() const {
+        const double left = step > 0 ? end - 1e-9 - begin : begin - end - 1e-9;
+        return std::max(0.0, std::ceil(left / std::abs(step)));
+    }
 };
 
 /// Evaluates expressions and adjustments whose names all have values. Functions give nothing after an error.
 class Evaluator {
   public:
     /// Both must outlive this.
-    Evaluator(const ForeignFile& file, const Grammar& grammar) : file_(file), grammar_(grammar) {
+    Evaluator(const ForeignFile& file, const Grammar& grammar)
+        : seed(file.seed == 0 ? 0 : CounterRandom::scrambled(file.seed)), file_(file), grammar_(grammar) {
         for (const Definition& definition : grammar_.definitions)
             definitions_.emplace(definition.name, &definition);
     }
@@ -46,6 +55,8 @@ class Evaluator {
     std::optional<Values> bind(const std::vector<Parameter>& parameters, const std::vector<Value>& arguments,
                                Span place);
 
+    /// The rule of a shape that chance chooses. Requires that there is one.
+    const Rule& rule(const Shape& shape);
     /// The lines of a `switch` that count; null if none do, or after an error.
     const Elements* choice(const Element& element, const Surroundings& at);
     std::optional<LoopBounds> bounds(const Element& loop, const Surroundings& at);
@@ -56,6 +67,8 @@ class Evaluator {
 
     /// The random numbers of the rule that is evaluated.
     Draws draws;
+    /// A part of the key of all random numbers.
+    const std::uint64_t seed;
     /// Comparisons of sides that are left for the outlines of all paths.
     std::size_t outline_work = 100'000'000;
 

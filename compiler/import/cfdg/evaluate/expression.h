@@ -1,69 +1,49 @@
 #pragma once
 
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
+#include "compiler/import/cfdg/evaluate/chance.h"
+#include "compiler/import/cfdg/evaluate/evaluator.h"
 #include "compiler/import/cfdg/parse/ast.h"
 #include "compiler/import/importer.h"
 
 namespace graftal::cfdg {
 
-/// Names at a place, and our text for them.
-using Scope = std::map<std::string, std::string>;
-/// Names with known numbers.
-using Numbers = std::map<std::string, double>;
-
 struct Interval {
     double least = 0, most = 0;
 };
 
-/// Expressions of a grammar as text of ours, and as numbers.
+/// The numbers of expressions before parameters have values, without errors. `space` is the name space of the
+/// rule that holds the expression.
 class Expressions {
   public:
-    /// Both must outlive this.
-    Expressions(const ForeignFile& file, const Grammar& grammar);
+    /// All must outlive this.
+    Expressions(const ForeignFile& file, const Grammar& grammar, const Chance& chance);
 
-    /// Our text; nothing after an error that names what has no counterpart.
-    std::optional<std::string> text(const Expr& expression, const Scope& scope);
-    /// The number, without an error: nothing if it depends on parameters or chance.
-    std::optional<double> number(const Expr& expression, const Numbers& known = {}) const;
+    /// Nothing if the number depends on names of rules or chance.
+    std::optional<double> number(const Expr& expression, const std::string& space);
+    /// The turns of a loop; nothing where its bounds have no known numbers.
+    std::optional<double> turns(const Element& loop, const std::string& space);
     /// The range of numbers that the expression may give.
-    std::optional<Interval> range(const Expr& expression) const;
-    /// Whether the name of a variable or an index occurs in it.
-    static bool mentions(const Expr& expression, const std::string& name);
-
-    /// The numbers of the file that become `let`s.
-    const std::vector<const Definition*>& constants() const { return constants_; }
-    const Definition* definition(const std::string& name) const;
-    /// The adjustment of the file that `trans NAME` names; null if there is none.
-    const Definition* modification(const Adjustment& adjustment) const;
+    std::optional<Interval> range(const Expr& expression, const std::string& space);
+    /// The logarithm of the largest factor of size; infinite if it cannot be known.
+    double growth(const Modification& modification, const std::string& space);
 
   private:
-    std::optional<std::string> element(const Expr& expression, const Scope& scope);
-    std::optional<std::string> let(const Expr& expression, const Scope& scope);
-    std::optional<std::string> name(const Expr& expression, const Scope& scope);
-    std::optional<std::string> call(const Expr& expression, const Scope& scope);
-    std::optional<std::string> own_function(const Expr& expression, const Definition& function,
-                                            const std::vector<std::string>& arguments);
-    std::optional<std::string> known_function(const Expr& expression,
-                                              const std::vector<std::string>& arguments);
-    std::nullopt_t fail(const Expr& expression, std::string message);
-    std::optional<double> evaluate(const Expr& expression, const Numbers& known, int depth) const;
+    /// Whether an expression or a modification depends on names of rules or chance.
+    template<typename Part> bool is_open(const Part& part, const std::string& space) const {
+        return chance_.decides(part, space) || any_part(part, [&](const Expr& expression) {
+                   return expression.kind == Expr::Kind::name && own_.contains(expression.text);
+               });
+    }
 
-    const ForeignFile& file_;
-    const Grammar& grammar_;
-    std::vector<const Definition*> constants_;
-    std::map<std::string, double> values_; ///< of the constants
-    std::map<std::string, const Definition*> definitions_;
-    int depth_ = 0; ///< of functions that call each other
-    std::size_t written_ = 0;
-    mutable std::size_t work_ = 0; ///< numbers evaluated: functions that call each other can be endless
+    Diagnostics silent_;
+    ForeignFile file_;
+    Evaluator evaluator_;
+    const Chance& chance_;
+    std::set<std::string> own_; ///< names to which rules give meanings
 };
-
-/// Whether our text draws random numbers.
-bool is_random(const std::string& text);
 
 } // namespace graftal::cfdg

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,16 +14,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A grammar that .inst has no words for, so that it is computed.
-const std::string computed = "v = 1, 2\n";
-
 /// The red part of each shape's colour, in tenths, from the lowest to the highest. Of squares and triangles:
 /// circles are thick.
-std::string painted(const std::string& grammar) {
+std::string painted(const std::string& grammar, std::optional<unsigned> steps = {}) {
     const ImportedShapes model("a.cfdg", "startshape A\n" + grammar);
     EXPECT_TRUE(model.graph) << model.said() << model.translation.substr(0, 2000);
     std::vector<std::pair<double, char>> shapes;
-    for (const UnfoldedLeaf& leaf : model.leaves()) {
+    for (const UnfoldedLeaf& leaf : model.leaves(steps)) {
         const double red = std::pow(leaf.tint.over(Rgb(0.5)).r, 1 / 2.3); // as on a screen, nearly
         shapes.emplace_back(leaf.world_from_object.translation.z,
                             static_cast<char>('0' + std::lround(10 * red)));
@@ -46,34 +44,28 @@ std::string repeated(std::size_t count, const std::string& text) {
 
 // Found by a loop of 1100 turns: its last squares covered the smaller circle.
 TEST(ContextFreeOrder, SmallerShapesLieInFrontHoweverLongALoopIs) {
-    for (const std::string& how : {std::string(), computed + "shape Z { Z [x v] }\n"})
-        for (const char* const turns : {"3", "1100", "5000"}) {
-            const std::size_t count = std::stoul(turns);
-            const std::string loop = std::string("loop ") + turns + " [x 0.0001] ";
-            EXPECT_EQ(painted(how + "shape A { B [s 0.5] " + loop + "C [] }\nshape B { TRIANGLE [b 1] }\n" +
-                              "shape C { SQUARE [] }"),
-                      repeated(count, "0") + ":");
-            EXPECT_EQ(painted(how + "shape A { B [s 0.999] " + loop + "{ SQUARE [] SQUARE [b 0.5] } }\n" +
-                              "shape B { TRIANGLE [b 1] }"),
-                      repeated(count, "05") + ":");
-        }
+    for (const char* const turns : {"3", "1100", "5000"}) {
+        const std::size_t count = std::stoul(turns);
+        const std::string loop = std::string("loop ") + turns + " [x 0.0001] ";
+        EXPECT_EQ(painted("shape A { B [s 0.5] " + loop + "C [] }\nshape B { TRIANGLE [b 1] }\n" +
+                          "shape C { SQUARE [] }"),
+                  repeated(count, "0") + ":");
+        EXPECT_EQ(painted("shape A { B [s 0.999] " + loop + "{ SQUARE [] SQUARE [b 0.5] } }\n" +
+                          "shape B { TRIANGLE [b 1] }"),
+                  repeated(count, "05") + ":");
+    }
 }
 
 TEST(ContextFreeOrder, TurnsOfLoopsLieOverEachOther) {
     const std::string inner = "shape B { loop 3 [y 1] { SQUARE [] TRIANGLE [b 0.5] } }";
-    for (const std::string& how : {std::string(), computed + "shape Z { Z [x v] }\n"}) {
-        // A shape's content over that of the same shape before it.
-        EXPECT_EQ(painted(how + "shape A { loop 2 [x 0.1] { B [] } B [b 0.5] }\n" + inner), "050505"
-                                                                                            "050505"
-                                                                                            "585858");
-        EXPECT_EQ(painted(how + "shape A { loop 2 [x 0.1] loop 2 [y 0.1] { SQUARE [] SQUARE [b 1] } }"),
-                  "0:0:0:0:");
-        // Turns that become smaller.
-        EXPECT_EQ(painted(how + "shape A { SQUARE [b 1] loop 3 [s 0.5] { SQUARE [] SQUARE [b 0.5] } }"),
-                  ":050505");
-        EXPECT_EQ(painted(how + "shape A { loop 3 [s 0.5] { B [] } SQUARE [b 1] }\nshape B { SQUARE [] }"),
-                  ":000");
-    }
+    // A shape's content over that of the same shape before it.
+    EXPECT_EQ(painted("shape A { loop 2 [x 0.1] { B [] } B [b 0.5] }\n" + inner), "050505"
+                                                                                  "050505"
+                                                                                  "585858");
+    EXPECT_EQ(painted("shape A { loop 2 [x 0.1] loop 2 [y 0.1] { SQUARE [] SQUARE [b 1] } }"), "0:0:0:0:");
+    // Turns that become smaller.
+    EXPECT_EQ(painted("shape A { SQUARE [b 1] loop 3 [s 0.5] { SQUARE [] SQUARE [b 0.5] } }"), ":050505");
+    EXPECT_EQ(painted("shape A { loop 3 [s 0.5] { B [] } SQUARE [b 1] }\nshape B { SQUARE [] }"), ":000");
     // The number of turns is a parameter, or each turn is another.
     EXPECT_EQ(
         painted(
@@ -85,22 +77,25 @@ TEST(ContextFreeOrder, TurnsOfLoopsLieOverEachOther) {
 
 // A rule's own primitives are painted before the shapes that it calls, and those in the order of their calls.
 TEST(ContextFreeOrder, PrimitivesOfARuleLieBelowWhatItCalls) {
-    for (const std::string& how : {std::string(), computed + "shape Z { Z [x v] }\n"})
-        EXPECT_EQ(painted(how + "shape A { B [] SQUARE [] }\nshape B { SQUARE [b 1] }"), "0:");
+    EXPECT_EQ(painted("shape A { B [] SQUARE [] }\nshape B { SQUARE [b 1] }"), "0:");
     // Those of a generation before those of the next one.
-    EXPECT_EQ(painted(computed + "shape Z { Z [x v] }\nshape A { B [] C [] }\nshape B { D [] }\n"
-                                 "shape D { SQUARE [b 1] }\nshape C { SQUARE [] }"),
+    EXPECT_EQ(painted("shape A { B [] C [] }\nshape B { D [] }\n"
+                      "shape D { SQUARE [b 1] }\nshape C { SQUARE [] }"),
               "0:");
 }
 
 TEST(ContextFreeOrder, LongRecursionKeepsItsOrder) {
-    const std::string chain =
-        "shape A { SQUARE [] A [x 0.01 s 0.999] B [s 0.5] }\nshape B { TRIANGLE [b 1] }";
-    const std::string order = painted(computed + "shape Z { Z [x v] }\nCF::Size = [s 4]\n" + chain);
+    const std::string order = painted("CF::Size = [s 4]\nshape A { C(0) [] }\nshape B { TRIANGLE [b 1] }\n"
+                                      "shape C(n) { SQUARE [] C(n + 1) [x 0.01 s 0.999] B [s 0.5] }");
     // Triangles of half the size of the shape that draws them come where recursion is as small.
     const std::size_t first = order.find(':');
     EXPECT_EQ(first, static_cast<std::size_t>(std::ceil(std::log(0.5) / std::log(0.999))));
     EXPECT_GT(order.size(), 1000u);
+    // Recursion without end keeps the same order.
+    const std::string endless =
+        painted("shape A { SQUARE [] A [x 0.01 s 0.9] B [s 0.5] }\nshape B { TRIANGLE [b 1] }", 100);
+    EXPECT_EQ(endless.find(':'), static_cast<std::size_t>(std::ceil(std::log(0.5) / std::log(0.9))));
+    EXPECT_GT(endless.size(), 190u);
 }
 
 // Found by 'z 1' in a shape of half the size, which lay below a 'z 0.7' beside it.

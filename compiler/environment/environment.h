@@ -52,7 +52,6 @@ struct EnvironmentSettings {
     Vec3 flat{0.0}; ///< unit vector that distances of a crowd or of rivals take no notice of; 0: none
     double transmittance = 0;               ///< of a ball, in [0, 1]
     std::vector<EnvironmentSource> sources; ///< intensities sum to 1; none: a uniform sky
-    Vec3 up{0, 1, 0};                       ///< unit vector: where the sky is
     double voxel = 1, strength = 1, decay = 2;
     unsigned depth = 0; ///< in voxels
     std::uint32_t point_count = 0;

@@ -23,15 +23,13 @@ Vec3 across(Vec3 direction) {
 }
 
 /// Spread evenly over the hemisphere, by the golden angle.
-std::vector<EnvironmentSource> uniform_sky(Vec3 up) {
+std::vector<EnvironmentSource> uniform_sky() {
     std::vector<EnvironmentSource> sky;
-    const Vec3 x = across(up), y = glm::cross(up, x);
     for (std::size_t i = 0; i < sky_directions; ++i) {
         const double height = (static_cast<double>(i) + 0.5) / sky_directions;
         const double turn = static_cast<double>(i) * std::numbers::pi * (3 - std::sqrt(5.0));
         const double level = std::sqrt(1 - height * height);
-        sky.push_back(
-            {level * std::cos(turn) * x + level * std::sin(turn) * y + height * up, 1.0 / sky_directions});
+        sky.push_back({Vec3(-level * std::sin(turn), height, -level * std::cos(turn)), 1.0 / sky_directions});
     }
     return sky;
 }
@@ -56,7 +54,7 @@ class Shade : public GrowthEnvironment {
   public:
     Shade(const EnvironmentSettings& settings, Diagnostics& diagnostics)
         : transmittance_(settings.transmittance),
-          sources_(settings.sources.empty() ? uniform_sky(settings.up) : settings.sources),
+          sources_(settings.sources.empty() ? uniform_sky() : settings.sources),
           budget_(diagnostics, settings.span) {}
 
     bool answer(std::span<EnvironmentQuery> queries) override {

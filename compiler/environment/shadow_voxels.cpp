@@ -20,12 +20,7 @@ class ShadowVoxels : public GrowthEnvironment {
   public:
     ShadowVoxels(const EnvironmentSettings& settings, Diagnostics& diagnostics)
         : size_(settings.voxel), strength_(settings.strength), decay_(settings.decay), depth_(settings.depth),
-          budget_(diagnostics, settings.span) {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            if (std::abs(settings.up[static_cast<int>(axis)]) > std::abs(settings.up[static_cast<int>(up_)]))
-                up_ = axis;
-        down_ = settings.up[static_cast<int>(up_)] > 0 ? -1 : 1;
-    }
+          budget_(diagnostics, settings.span) {}
 
     bool answer(std::span<EnvironmentQuery> queries) override {
         std::unordered_map<GridCell, double, CellHash> shadow;
@@ -60,15 +55,14 @@ class ShadowVoxels : public GrowthEnvironment {
     bool throw_shadow(const GridCell& from, double weight,
                       std::unordered_map<GridCell, double, CellHash>& shadow) {
         double share = weight * strength_;
-        const std::size_t x = (up_ + 1) % 3, z = (up_ + 2) % 3;
         for (std::int64_t q = 0; q <= depth_; ++q, share /= decay_) {
             if (!budget_.take(static_cast<std::uint64_t>((2 * q + 1) * (2 * q + 1)))) return false;
             for (std::int64_t i = -q; i <= q; ++i)
                 for (std::int64_t k = -q; k <= q; ++k) {
                     GridCell cell = from;
-                    cell[up_] += down_ * q;
-                    cell[x] += i;
-                    cell[z] += k;
+                    cell[0] += k;
+                    cell[1] -= q;
+                    cell[2] += i;
                     shadow[cell] += share;
                 }
             if (shadow.size() > max_shadow_voxels) return refuse();
@@ -85,8 +79,6 @@ class ShadowVoxels : public GrowthEnvironment {
 
     double size_, strength_, decay_;
     std::int64_t depth_;
-    std::size_t up_ = 0;
-    std::int64_t down_ = -1;
     EnvironmentBudget budget_;
 };
 

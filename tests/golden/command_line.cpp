@@ -8,6 +8,8 @@
 
 #include <sys/wait.h>
 
+#include "runtime/image_files/image_files.h"
+
 namespace graftal {
 
 namespace {

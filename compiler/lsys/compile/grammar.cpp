@@ -8,9 +8,7 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
-#include "compiler/lower/lower_transform.h"
 #include "compiler/lsys/compile/checks.h"
 #include "compiler/lsys/compile/declarations.h"
 #include "compiler/lsys/compile/surroundings.h"
@@ -145,7 +143,6 @@ class GrammarBuilder {
             block_.seed, [](double x) { return x >= 0 && x <= largest_seed && x == std::floor(x); }, "seed",
             "be a whole number from 0 to 2^53");
         grammar_.seed = static_cast<std::uint64_t>(seed.value_or(0));
-        if (block_.vertical) set_direction(*block_.vertical, "vertical", grammar_.vertical);
         if (!block_.steps) return;
         grammar_.infinite = !block_.steps->value;
         if (grammar_.infinite) return;
@@ -154,16 +151,6 @@ class GrammarBuilder {
             [](double x) { return x >= 0 && x <= max_derivation_steps && x == std::floor(x); }, "steps",
             fmt::format("be a whole number from 0 to {}, or infinite", max_derivation_steps));
         if (steps) grammar_.steps = static_cast<unsigned>(*steps);
-    }
-
-    void set_direction(const LsysDirection& statement, std::string_view name, Vec3& direction) {
-        const std::optional<Vec3> given = lower_vector(statement.direction, grammar_.lets, diagnostics_);
-        if (!given) return;
-        const double length = glm::length(*given);
-        if (length > 0 && std::isfinite(length))
-            direction = *given / length;
-        else
-            diagnostics_.error(statement.span, fmt::format("'{}' must have a direction", name));
     }
 
     SymbolId symbol(std::string_view name, Span span) {

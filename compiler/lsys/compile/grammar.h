@@ -128,7 +128,6 @@ struct LsysGrammar {
     std::vector<TropismKind> tropism_kinds; ///< of all; empty: of one that is plain
     Bending bending = Bending::after_segments;
     std::optional<EnvironmentSettings> environment; ///< answers `?E`; without its seed
-    Vec3 vertical{0, 1, 0};                         ///< the same, that `$` and `@B` look at
     std::uint64_t seed = 0;
     std::optional<unsigned> steps; ///< nothing: not given, or infinite
     bool infinite = false;

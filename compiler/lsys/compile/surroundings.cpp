@@ -37,7 +37,6 @@ class SurroundingsBuilder {
         for (const LsysEnvironment& statement : block_.environment)
             add(statement);
         if (block_.environment.empty()) return check_queries();
-        settings_.up = grammar_.vertical;
         check_regions();
         grammar_.environment = std::move(settings_);
     }

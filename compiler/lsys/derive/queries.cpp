@@ -38,7 +38,7 @@ TurtleContext turtle_context(const LsysGrammar& grammar, TurtleBodies& bodies, D
 TurtleState turtle_start(const LsysGrammar& grammar) {
     TurtleState start;
     start.tropism = grammar.tropism;
-    start.vertical = grammar.vertical;
+    start.vertical = {0, 1, 0};
     if (grammar.tropism_kinds.empty() && !grammar.uses({TurtleCommand::go_to, TurtleCommand::head_to}))
         return start;
     auto frame = std::make_shared<TurtleFrame>();

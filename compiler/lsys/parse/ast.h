@@ -121,7 +121,7 @@ struct LsysContextFilter {
     Span span;                 ///< of the keyword
 };
 
-/// `vertical x, y, z`, `tropism x, y, z [, angle]` or `torque x, y, z`
+/// `tropism x, y, z [, angle]` or `torque x, y, z`
 struct LsysDirection {
     std::vector<Expression> direction; ///< three
     Span span;                         ///< of the keyword
@@ -165,7 +165,6 @@ struct LsysBlock {
     std::vector<LsysDirection> tropisms;
     std::optional<LsysBending> bending;
     std::vector<LsysEnvironment> environment;
-    std::optional<LsysDirection> vertical;
     std::optional<LsysPrecedence> precedence;
     std::vector<Name> colors;  ///< materials of the colour indices 0, 1, 2, ...
     std::vector<Name> modules; ///< declared names, each once

@@ -126,7 +126,6 @@ class BlockParser {
         if (word == "tropism" || word == "torque") return parse_tropism(statement);
         if (word == "bending") return parse_bending_of(statement);
         if (word == "environment") return parse_environment_of(statement);
-        if (word == "vertical") return parse_direction(statement, block_.vertical);
         if (word == "colors") return parse_colors(statement);
         if (word == "table") return parse_table(statement);
         if (word == "precedence") return parse_precedence(statement);
@@ -299,15 +298,6 @@ class BlockParser {
         TokenStream stream = values(statement);
         std::optional<LsysEnvironment> environment = parse_environment(stream);
         if (environment && text_.finish(stream)) block_.environment.push_back(std::move(*environment));
-    }
-
-    void parse_direction(const LsysStatement& statement, std::optional<LsysDirection>& of) {
-        TokenStream stream = values(statement);
-        std::optional<std::vector<Expression>> direction =
-            parse_vector(stream, fmt::format("'{}'", statement.word));
-        if (!direction || !text_.finish(stream)) return;
-        set_once(statement, of,
-                 LsysDirection{std::move(*direction), scanner_.span(statement.word), std::nullopt});
     }
 
     /// `table NAME = number, number, ...`

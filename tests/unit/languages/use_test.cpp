@@ -114,7 +114,7 @@ TEST_F(Use, models_of_other_programs_have_parts_where_their_translations_have) {
     EXPECT_THAT(errors(), HasSubstr("'l.F'"));
 }
 
-// A grammar of one line that begins with another shape gives a part of any arguments.
+// A grammar that begins with another shape gives a part of any arguments.
 TEST_F(Use, parts_of_grammars_take_arguments_by_a_start_of_their_own) {
     write("tile.cfdg",
           "startshape A\nshape A { B(2) [] SQUARE [] }\nshape B(n) { loop (n) [x 1] CIRCLE [] }");

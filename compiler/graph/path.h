@@ -5,7 +5,6 @@
 // the tracer's edges).
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -97,9 +96,9 @@ struct Paint {
 
     /// This paint behind another.
     Paint under(const Paint& front) const {
-        Paint seen = *this;
-        for (std::size_t k = 0; k < 3; ++k)
-            seen.fixed[k] = front.fixed[k] + front.open * fixed[k];
+        Paint seen;
+        seen.fixed = {front.fixed[0] + front.open * fixed[0], front.fixed[1] + front.open * fixed[1],
+                      front.fixed[2] + front.open * fixed[2]};
         seen.open = front.open * open;
         return seen;
     }

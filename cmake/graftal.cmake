@@ -71,6 +71,20 @@ function(graftal_layer folder)
   target_precompile_headers(${name} REUSE_FROM graftal_headers)
 endfunction()
 
+# graftal_kernel(LAYER FILE.comp): what GPUs run of a layer, as an array FILE_spirv in the header FILE_spirv.h.
+function(graftal_kernel folder kernel)
+  graftal_targets(layer ${folder})
+  get_filename_component(name ${kernel} NAME_WE)
+  set(header ${PROJECT_BINARY_DIR}/kernels/${name}_spirv.h)
+  file(GLOB_RECURSE texts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/*/*.glsl)
+  add_custom_command(OUTPUT ${header} VERBATIM
+    COMMAND ${GRAFTAL_GLSLANG} --quiet --target-env vulkan1.2 -S comp -I${PROJECT_SOURCE_DIR} --vn ${name}_spirv
+            -o ${header} ${PROJECT_SOURCE_DIR}/${kernel}
+    DEPENDS ${PROJECT_SOURCE_DIR}/${kernel} ${texts})
+  target_sources(${layer} PRIVATE ${header})
+  target_include_directories(${layer} PRIVATE ${PROJECT_BINARY_DIR}/kernels)
+endfunction()
+
 # graftal_test(FOLDER USES folder...): one GoogleTest program from the sources of tests/FOLDER, its sub-rooms included. The
 # label of its tests is the first folder of FOLDER: `ctest -L unit` is the inner loop.
 function(graftal_test folder)

@@ -14,3 +14,6 @@ find_package(nlohmann_json REQUIRED)
 find_package(TinyGLTF REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(pugixml REQUIRED)
+# Vulkan's loader is found at run time, if there is one: programs need its headers alone, and the compiler of its kernels.
+find_path(GRAFTAL_VULKAN_HEADERS vulkan/vulkan_core.h REQUIRED)
+find_program(GRAFTAL_GLSLANG glslangValidator REQUIRED)

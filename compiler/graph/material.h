@@ -33,7 +33,7 @@ struct Material {
     /// colours what goes through it.
     double absorption = 0;
     double blur =
-        0; ///< how rough mirrors and glass are: the alpha of Trowbridge and Reitz (trace/shade/facets.h)
+        0; ///< how rough mirrors and glass are: the alpha of Trowbridge and Reitz (trace/shade/formulas.glsl)
     /// The picture that is wrapped round each primitive in place of rgb (texture_space.h). It is named by
     /// the file it is read from or the model it is drawn from; empty: none. Where its alpha is below 1/2
     /// there is no surface.

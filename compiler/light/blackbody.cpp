@@ -4,6 +4,8 @@
 
 #include <glm/common.hpp>
 
+#include "compiler/light/formulas.h"
+
 namespace graftal {
 
 namespace {
@@ -33,9 +35,7 @@ double emitted(double wavelength_nm, double temperature_k) {
 } // namespace
 
 Rgb rgb_from_xyz(Rgb xyz) {
-    return {3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
-            -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
-            0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z};
+    return formulas::linear_srgb_of(xyz);
 }
 
 Rgb blackbody_rgb(double temperature_k) {

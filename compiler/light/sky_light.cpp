@@ -7,18 +7,15 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "compiler/light/blackbody.h"
+#include "compiler/light/formulas.h"
 #include "compiler/support/axes_across.h"
 
 namespace graftal {
 
 namespace {
 
-/// Perez's formula without the factor of the zenith.
 double perez_at(const std::array<double, 5>& c, double cos_zenith, double cos_sun) {
-    const double to_sun = std::acos(std::clamp(cos_sun, -1.0, 1.0));
-    return (1 + c[0] * std::exp(c[1] / cos_zenith)) *
-           (1 + c[2] * std::exp(c[3] * to_sun) + c[4] * cos_sun * cos_sun);
+    return formulas::perez_at(c[0], c[1], c[2], c[3], c[4], cos_zenith, cos_sun);
 }
 
 /// a t^3 + b t^2 + c t + d
@@ -68,9 +65,7 @@ Rgb ClearSky::radiance(Vec3 direction, Vec3 up) const {
     for (int i = 0; i < 3; ++i)
         yxy[i] = zenith_yxy[i] *
                  perez_at(perez[static_cast<std::size_t>(i)], std::max(height, least_height), cos_sun);
-    const double luminance = std::max(yxy.x, 0.0);
-    const Rgb xyz = luminance / yxy.z * Rgb(yxy.y, yxy.z, 1 - yxy.y - yxy.z);
-    return glm::max(rgb_from_xyz(xyz), Rgb(0.0));
+    return formulas::light_of_yxy(yxy);
 }
 
 Rgb SkyLight::radiance(Vec3 direction) const {

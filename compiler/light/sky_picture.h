@@ -39,6 +39,7 @@ class SkyPicture {
     /// The irradiance of a surface that faces up, over pi.
     Rgb on_paper() const { return on_paper_; }
 
+    const std::vector<Texel>& texels() const { return texels_; }
     const SkySampling& sampling() const { return *sampling_; }
     const SkyCells& cells() const { return *cells_; }
 

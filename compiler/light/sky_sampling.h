@@ -27,6 +27,11 @@ class SkySampling {
     /// The density of direction(), per steradian. Requires a unit vector.
     double density(Vec3 direction) const;
 
+    /// The tables, for engines that read them by themselves: the chance of each row or one before it; and
+    /// likewise of each column within its row, row by row.
+    std::span<const double> rows() const { return rows_; }
+    std::span<const float> columns() const { return columns_; }
+
   private:
     double row_chance(std::size_t row) const { return row > 0 ? rows_[row] - rows_[row - 1] : rows_[0]; }
     /// The chance of a column as it is rounded, so that sampling and its density agree.

@@ -61,6 +61,9 @@ class Flattening {
         flat.unending = node.unending;
         flat.terminal = node.terminal;
         flat.diameter = static_cast<float>(2 * frame_from_graph.linear[0][0] * node.ball.radius);
+        const Vec3 centre = frame_from_graph(node.ball.centre);
+        for (int axis = 0; axis < 3; ++axis)
+            flat.centre[static_cast<std::size_t>(axis)] = static_cast<float>(centre[axis]);
         if (node.cullable && !node.primitive)
             flat.cut_detail = static_cast<float>(cut_detail(node, error_px));
         flat.frame_from_proxy = floats_of(frame_from_graph * node.node_from_proxy);

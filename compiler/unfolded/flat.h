@@ -45,7 +45,8 @@ struct FlatNode {
     std::uint32_t primitive = flat_none; ///< of FlatGraph::primitives; then it has no edges
     std::uint32_t unending = 0;          ///< 1: cut where no level is left
     std::uint32_t terminal = 0;          ///< 1: below the stop edges, what names no material inherits `mean`
-    float diameter = 0;                  ///< of the ball that decides how large it is, in its frame
+    std::array<float, 3> centre{};       ///< of the ball that decides how large it is, in its frame
+    float diameter = 0;                  ///< likewise
     float cut_detail = 0;                ///< detail of the diameter from which down it is cut; 0: never
     std::array<float, 12> frame_from_proxy{}; ///< places the unit sphere: by columns, the translation last
     Paint mean, proxy;                        ///< colours from afar

@@ -61,7 +61,7 @@ Status Drawing::finish(const TraceModel& model, const Sampling& finest, double s
 }
 
 Status Drawing::look(const TraceModel& model, const Sampling& sampling) {
-    PictureTracer tracer(model, limits_of(model, options_));
+    PictureTracer tracer(model, limits_of(model.prepared, model.view, options_));
     const std::size_t traced = trace(tracer, sampling);
     // The noise is that of the last look alone.
     report_.rays.noisy_pixels = report_.rays.noise_1024 = report_.rays.measured_pixels = 0;

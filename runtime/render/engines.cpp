@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/render/gpu_engine.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/render/povray_engine.h"
 #include "runtime/render/render.h"
@@ -18,12 +19,12 @@ DrawReport& DrawReport::operator+=(const DrawReport& other) {
 }
 
 std::span<const Engine> engines() {
-    static const std::array table = {native_engine, povray_engine};
+    static const std::array table = {native_engine, gpu_engine, povray_engine};
     return table;
 }
 
 const Engine* find_engine(std::string_view name) {
-    if (name == auto_engine) return &engines().front();
+    if (name == auto_engine) return find_engine(has_gpu() ? gpu_engine.name : native_engine.name);
     for (const Engine& engine : engines())
         if (engine.name == name) return &engine;
     return nullptr;

@@ -25,17 +25,17 @@ Sampling sampling_for(bool sampled, const View& view, const RenderOptions& optio
 
 } // namespace
 
-ShaderLimits limits_of(const TraceModel& model, const RenderOptions& options) {
+ShaderLimits limits_of(const PreparedCut& prepared, const View& view, const RenderOptions& options) {
     constexpr double farthest_in_povray = 1e7;
-    const Ball& ball = model.prepared.cut.nodes[model.prepared.cut.root].ball;
+    const Ball& ball = prepared.cut.nodes[prepared.cut.root].ball;
     DrawnExtent drawn;
     if (ball.radius > 0) {
         drawn.bounds.include(ball.centre - Vec3(ball.radius));
         drawn.bounds.include(ball.centre + Vec3(ball.radius));
     }
     ShaderLimits limits;
-    limits.farthest = farthest_in_povray / choose_units(drawn, model.view.camera).scale;
-    if (options.listed_lights) limits.list = list_size(model.view.quality);
+    limits.farthest = farthest_in_povray / choose_units(drawn, view.camera).scale;
+    if (options.listed_lights) limits.list = list_size(view.quality);
     return limits;
 }
 
@@ -53,15 +53,16 @@ PicturePlan plan_picture(const PreparedView& prepared, const RenderOptions& opti
 FittedModel fit_picture(const PreparedView& prepared, const RenderOptions& options, const PicturePlan& plan,
                         const std::function<bool()>& cancelled,
                         const std::function<void(const TraceModel&, double)>& on_first_look) {
-    return fit_work({.prepared = prepared.prepared,
-                     .view = prepared.viewed->view,
-                     .options = plan.detail,
-                     .textures = prepared.textures,
-                     .wanted = plan.wanted,
-                     .limits_of = [&](const TraceModel& tried) { return limits_of(tried, options); },
-                     .threads = options.threads,
-                     .cancelled = cancelled,
-                     .on_first_look = on_first_look});
+    return fit_work(
+        {.prepared = prepared.prepared,
+         .view = prepared.viewed->view,
+         .options = plan.detail,
+         .textures = prepared.textures,
+         .wanted = plan.wanted,
+         .limits_of = [&](const TraceModel& tried) { return limits_of(tried.prepared, tried.view, options); },
+         .threads = options.threads,
+         .cancelled = cancelled,
+         .on_first_look = on_first_look});
 }
 
 PictureFit fit_of(const FittedModel& fitted, ImageSize size) {

@@ -12,7 +12,7 @@ namespace graftal {
 struct PreparedView;
 
 /// Where POV-Ray's pictures end, and whether soft light is listed.
-ShaderLimits limits_of(const TraceModel& model, const RenderOptions& options);
+ShaderLimits limits_of(const PreparedCut& prepared, const View& view, const RenderOptions& options);
 
 /// The native engine's plan for a view: the detail, with the work that goes for this light, and the wanted
 /// samples.

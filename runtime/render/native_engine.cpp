@@ -145,7 +145,7 @@ Draft first_draft(const TraceModel& model, const Sampling& finest, double sample
     return draft;
 }
 
-std::string in_words(const NativeReport& report) {
+std::string in_words(const NativeReport& report, std::string_view device) {
     std::string text = report.finished ? "" : "unfinished: ";
     if (report.fewer_where_calm) text += "up to ";
     text += samples_text(report.samples_a_pixel);
@@ -155,7 +155,8 @@ std::string in_words(const NativeReport& report) {
     if (report.error_px > 0) text += fmt::format(", error {:.3g} px", report.error_px);
     if (const std::optional<double> noise = report.rays.noise_255())
         text += fmt::format(", noise {:.2g} of 255", *noise);
-    text += fmt::format(" in {:.2f} s, {}", report.seconds, rays_text(report.rays, report.seconds));
+    text += fmt::format(" in {:.2f} s{}{}, {}", report.seconds, device.empty() ? "" : " on ", device,
+                        rays_text(report.rays, report.seconds));
     if (report.pictures > 1)
         text += fmt::format("; the first of {} pictures after {:.2f} s", report.pictures,
                             report.first_picture_seconds);
@@ -229,6 +230,7 @@ std::optional<NativeReport> trace_fitted(const PreparedView& prepared, const Ren
 constinit const Engine native_engine = {
     .name = "native",
     .summary = "graftal's own ray tracer",
+    .progressive = true,
     .available = []() -> Status { return {}; },
     // Two options are fine, since it acts so anyhow: it has no POV-Ray to take --memory, and it goes into
     // every part, as --flatten wants it.
@@ -248,14 +250,24 @@ constinit const Engine native_engine = {
     .draw = [](PictureSession& session, const RenderOptions& options,
                Compilation& compilation) -> std::optional<DrawReport> {
         const std::optional<NativeReport> drawn = render_natively(session, options, compilation);
-        if (!drawn) return std::nullopt;
-        DrawReport report;
-        report.summary = in_words(*drawn);
-        report.rays = drawn->rays;
-        report.trace_seconds = drawn->seconds;
-        return report;
+        return drawn ? std::optional(report_of(*drawn)) : std::nullopt;
     },
 };
+
+DrawReport report_of(const NativeReport& drawn, std::string_view device) {
+    DrawReport report;
+    report.summary = in_words(drawn, device);
+    report.rays = drawn.rays;
+    report.trace_seconds = drawn.seconds;
+    return report;
+}
+
+bool prepare_view(PictureSession& session, const RenderOptions& options, PreparedView& model,
+                  Compilation& compilation) {
+    const StageOptions stages = stages_of(options);
+    return view_model(session, stages, model, compilation) &&
+           prepare_model(session, stages, model, compilation);
+}
 
 std::optional<NativeReport> render_natively(PictureSession& session, const RenderOptions& options,
                                             Compilation& compilation) {
@@ -328,11 +340,8 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
 
 std::optional<PictureFit> fit_natively(PictureSession& session, const RenderOptions& options,
                                        Compilation& compilation) {
-    const StageOptions stages = stages_of(options);
     PreparedView model;
-    if (!view_model(session, stages, model, compilation) ||
-        !prepare_model(session, stages, model, compilation))
-        return std::nullopt;
+    if (!prepare_view(session, options, model, compilation)) return std::nullopt;
     const CancelFlag cancel = session.control().cancel;
     const PicturePlan plan = plan_picture(model, options);
     const FittedModel fitted = fit_picture(model, options, plan, [&] { return cancel.raised(); });

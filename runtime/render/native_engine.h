@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "runtime/render/render.h"
 #include "runtime/render/stopwatch.h"
@@ -42,6 +43,13 @@ struct PreparedView {
     std::shared_ptr<const PreparedCut> prepared;
     ModelTextures textures;
 };
+
+/// Runs the stages before a picture. False after errors, or with a failed status.
+bool prepare_view(PictureSession& session, const RenderOptions& options, PreparedView& model,
+                  Compilation& compilation);
+
+/// A report for people. `device`: that drew it, unless it is the machine's processors.
+DrawReport report_of(const NativeReport& report, std::string_view device = "");
 
 /// Traces after the compiler, for render_natively(). `preparing` runs since the preparation began.
 std::optional<NativeReport> trace_model(const PreparedView& model, const RenderOptions& options,

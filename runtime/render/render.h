@@ -60,6 +60,7 @@ struct RenderOptions {
     std::optional<PictureFit> fit; ///< of the native engine: known already; requires `progressive` to be off
     bool listed_lights = false;    ///< soft light from a list of lights (light_list.h)
     int threads = 0;               ///< 0: as many as the engine likes
+    std::size_t device = 0;        ///< of the GPU engine: a number of gpu_devices()
     bool aovs = false;             ///< of an EXR: further channels (aov_channels.h)
     bool progressive = false;      ///< write coarse pictures first, each in place of the last
     bool unconfined = false;       ///< PovrayJob::unconfined
@@ -95,6 +96,7 @@ struct DrawReport {
 struct Engine {
     std::string_view name;    ///< word for `--engine`
     std::string_view summary; ///< for --help
+    bool progressive = false; ///< it can write coarse pictures first
 
     /// Fails, with advice, if the engine is not on this machine.
     Status (*available)();
@@ -113,11 +115,12 @@ struct Engine {
                                       Compilation& compilation);
 };
 
-/// All engines; the first one draws where nobody names one, or names this:
+/// All engines; the first one draws everywhere.
 std::span<const Engine> engines();
-inline constexpr std::string_view auto_engine = "auto";
 
-/// Null for an unknown name.
+/// The engine of a name; null for an unknown one. The automatic one is a GPU's where there is one, else the
+/// first: to look for a GPU may take a tenth of a second.
+inline constexpr std::string_view auto_engine = "auto";
 const Engine* find_engine(std::string_view name);
 
 /// "1.76 million rays per second", and what went wrong with some.

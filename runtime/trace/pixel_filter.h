@@ -15,8 +15,11 @@ class PixelFilter {
     /// Offset from the pixel's middle along one axis, in pixels, for u in [0, 1).
     double offset(double u) const;
 
-  private:
     static constexpr int steps = 256;
+    /// Offsets for u = 0, 1 / steps, ... 1, between which others are interpolated.
+    const std::array<double, steps + 1>& offsets() const { return offset_of_; }
+
+  private:
     std::array<double, steps + 1> offset_of_{};
 };
 

@@ -393,7 +393,8 @@ std::string complete(Options& options) {
         return refused; // before all that is said of a file's name
     if (std::string refused = options.watch ? refusal_to_watch(options) : ""; !refused.empty())
         return refused;
-    if (!options.engine) options.engine = &engines().front();
+    if (!options.engine)
+        options.engine = find_engine(options.draws && !options.watch ? auto_engine : engines().front().name);
     options.render.progressive = options.progressive.value_or(false);
     std::string problem = options.command->complete(options);
     if (problem.empty()) problem = refusal_of_folder(options); // a name that the model gave
@@ -472,6 +473,7 @@ ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_par
     if (chosen().empty()) return {std::nullopt, usage_error("which command?", "")};
     if (chosen() == "farm")
         return {std::nullopt, usage_error("farm: name a step: plan, submit, status, merge or clean", "farm")};
+    options.draws = chosen_command().get_option_no_throw("--engine") != nullptr;
     const std::string problem = complete(options);
     if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
 

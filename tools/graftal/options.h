@@ -53,6 +53,7 @@ struct Options {
     bool quiet = false;
 
     const Engine* engine = nullptr;  ///< --engine; never null after parse_command_line()
+    bool draws = false;              ///< the command has --engine
     std::optional<bool> progressive; ///< of `render`: as asked for; run_render() decides
     bool watch = false;              ///< of `render`: again after each change
     std::string identifier;          ///< of `compile` to an .inc; "": as the model's file

@@ -6,8 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "runtime/trace/shade/formulas.h"
 #include "runtime/trace/shade/point.h"
-#include "runtime/trace/shade/sky_choice.h"
 
 namespace graftal {
 
@@ -54,27 +54,29 @@ Rgb Shader::from_sky(const Point& point, double least, bool shine_only, SampleSt
     const double front = body * material.diffuse + material.specular;
     const double back = body * material.translucency;
     if (!(front + back > 0)) return Rgb(0.0);
-    const SkyChoice choice{front / (front + back), material.specular > 0};
-    Rgb light = sky_light(choice, point, body, choice.direction(point.normal, random.next()), least);
+    const double front_chance = front / (front + back);
+    const bool shines = material.specular > 0;
+    Rgb light = sky_light(front_chance, point, body,
+                          formulas::sky_choice(front_chance, shines, point.normal, random.next()), least);
     if (bright_sky_)
-        light += sky_light(choice, point, body,
+        light += sky_light(front_chance, point, body,
                            bright_sky_->direction(random.next()) * sky_->picture_from_world, least);
     return light;
 }
 
 /// Light of the sky in one direction, over its density by the strategies that may have chosen it.
-Rgb Shader::sky_light(const SkyChoice& choice, const Point& point, double body, Vec3 direction,
-                      double least) {
+Rgb Shader::sky_light(double front_chance, const Point& point, double body, Vec3 direction, double least) {
     const Material& material = *point.material;
+    const bool shines = material.specular > 0;
     const double along = glm::dot(point.normal, direction);
     if (!(std::abs(along) >= least_cosine)) return Rgb(0.0);
     const bool behind = along < 0;
     Rgb share = body * (behind ? -material.translucency : material.diffuse) * along * point.rgb;
-    if (!behind && choice.shines) share += shine(point, direction);
+    if (!behind && shines) share += shine(point, direction);
     if (!(largest(share) > 0)) return Rgb(0.0);
     const Rgb light = sky_->radiance(direction);
     if (!(largest(light) > 0)) return Rgb(0.0);
-    double density_pi = choice.density_pi(along);
+    double density_pi = formulas::sky_choice_density_pi(front_chance, shines, along);
     if (bright_sky_)
         density_pi += std::numbers::pi * bright_sky_->density(sky_->picture_from_world * direction);
     if (!(density_pi > 0)) return Rgb(0.0);
@@ -92,7 +94,7 @@ Rgb Shader::shine(const Point& point, Vec3 to_light) const {
     if (!(glint > 0 && exponent * (1 - glint) < dark_exponent)) return Rgb(0.0);
     const double share = material.specular * std::pow(glint, exponent);
     if (!(material.metallic > 0)) return Rgb(share);
-    return share * metal_colour(material.metallic, point.rgb, glm::dot(to_light, point.normal));
+    return share * formulas::metal_colour(material.metallic, point.rgb, glm::dot(to_light, point.normal));
 }
 
 Rgb Shader::light_of(const Lamp& lamp, const Point& point, double least) {

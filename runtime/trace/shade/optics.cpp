@@ -1,35 +1,10 @@
 #include "runtime/trace/shade/optics.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include <glm/exponential.hpp>
 
 namespace graftal {
-
-namespace {
-
-double squared(double x) {
-    return x * x;
-}
-
-} // namespace
-
-double fresnel(double ior, double cosine) {
-    const double square = ior * ior + cosine * cosine - 1;
-    if (!(square > 0)) return 1;
-    const double g = std::sqrt(square);
-    const double across = 0.5 * squared((g - cosine) / (g + cosine));
-    const double ratio = (cosine * (g + cosine) - 1) / (cosine * (g - cosine) + 1);
-    return std::clamp(across * (1 + ratio * ratio), 0.0, 1.0);
-}
-
-Rgb metal_colour(double metallic, Rgb rgb, double cosine) {
-    const double angle = std::acos(std::clamp(cosine, -1.0, 1.0)) / (std::numbers::pi / 2);
-    const double white = std::clamp(0.014567225 / squared(angle - 1.12) - 0.011612903, 0.0, 1.0);
-    return Rgb(1.0) + metallic * (1 - white) * (rgb - Rgb(1.0));
-}
 
 double Inside::relative_ior(const Interior& interior) const {
     if (count_ == 0) return interior.ior;

@@ -7,14 +7,6 @@
 
 namespace graftal {
 
-/// Fresnel's reflectance for unpolarized light, as POV-Ray has it. `ior`: of what is behind the surface over
-/// that of what the light is in; `cosine`: to the normal, in [0, 1]. 1 where all is reflected.
-double fresnel(double ior, double cosine);
-
-/// White light after a surface of this colour, as metallic as that: at grazing angles it stays white.
-/// POV-Ray's formula, an empirical one. `cosine`: to the normal.
-Rgb metal_colour(double metallic, Rgb rgb, double cosine);
-
 /// The solids that a ray is in. A surface is the boundary of its material's interior: the first one on the
 /// way leads in, the next one of the same interior out. What lies in another solid counts as cut out of
 /// it. (POV-Ray's trace.cpp: ComputeRelativeIOR, ComputeRefraction, ComputeShadowMedia.)

@@ -11,9 +11,8 @@
 #include "compiler/scene/ground.h"
 #include "compiler/support/axes_across.h"
 #include "compiler/support/number_range.h"
-#include "runtime/trace/shade/facets.h"
+#include "runtime/trace/shade/formulas.h"
 #include "runtime/trace/shade/point.h"
-#include "runtime/trace/shade/sky_choice.h"
 
 namespace graftal {
 
@@ -61,7 +60,7 @@ struct Shader::Way {
     /// Lessens the way from a rough surface, whose facets hide each other. `normal`: on the side of the way.
     void roughen(Vec3 normal, double blur) {
         if (!(counts > 0)) return;
-        const double left = unhidden(glm::dot(glm::normalize(direction), normal), blur);
+        const double left = formulas::unhidden(glm::dot(glm::normalize(direction), normal), blur);
         share *= left;
         counts *= left;
     }
@@ -272,7 +271,7 @@ bool Shader::scatter(Path& path, const Point& point, double choice, SampleStream
     const double through = point.material->translucency, diffuse = point.material->diffuse + through;
     path.weight *= point.shone_on * point.body * diffuse * point.rgb;
     const Vec3 pole = choice * diffuse < through ? -point.normal : point.normal;
-    path.ray = {point.position, cosine_direction(pole, random.next())};
+    path.ray = {point.position, formulas::cosine_direction(pole, random.next())};
     ++path.bounces;
     return is_finite(path.ray.direction);
 }
@@ -331,7 +330,7 @@ Shader::Point Shader::point_of(const Path& path, const SurfaceHit& hit, SampleSt
     if (glm::dot(hit.normal, path.ray.direction) > 0) normal = -hit.normal;
     Point point{path.ray(hit.t), normal, normal, -path.ray.direction, hit.rgb, hit.material, &path.inside};
     if (is_blurred(*hit.material))
-        point.facet = visible_facet(normal, point.to_viewer, hit.material->blur, random.next());
+        point.facet = formulas::visible_facet(normal, point.to_viewer, hit.material->blur, random.next());
     // Exactly on the ground, its own shadow cannot begin on the way to a low sun.
     if (view_.ground && hit.material == &view_.ground->material) point.position.y = view_.ground->height;
     if (hit.material == &catcher_paper_) point.position.y = view_.catcher->centre.y;
@@ -346,13 +345,13 @@ void Shader::share_light(Point& point) const {
     point.mirrors = material.reflection;
     if (material.has_coat()) {
         if (point.mirrors > 0)
-            point.mirrors *= fresnel(point.inside->relative_ior(interior_of(material)), cosine);
+            point.mirrors *= formulas::fresnel(point.inside->relative_ior(interior_of(material)), cosine);
         // POV-Ray leaves out what lies below a coat that is all but a mirror.
         point.body = 1 - point.mirrors > limits_.least_weight ? 1 - point.mirrors : 0;
     }
     point.mirrored = Rgb(point.mirrors);
     if (point.mirrors > 0 && material.metallic > 0)
-        point.mirrored *= metal_colour(material.metallic, point.rgb, cosine);
+        point.mirrored *= formulas::metal_colour(material.metallic, point.rgb, cosine);
     if (!material.is_transparent()) return;
     point.through = colour_of_pane(material, point.rgb) *
                     (material.has_coat() ? Rgb(point.body) : Rgb(1.0) - point.mirrored);

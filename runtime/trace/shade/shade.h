@@ -29,8 +29,6 @@ struct ShaderLimits {
     std::optional<LightListSize> list;
 };
 
-struct SkyChoice;
-
 /// Light, as POV-Ray 3.7 computes it for the scenes of compiler/povray: ambient, diffuse and specular light
 /// of suns and point lights with their shadows, mirrors, the ground and the sky. Let c be the surface's
 /// colour, and n its normal towards the viewer. Let v be the direction to the viewer, l that to a light of
@@ -43,7 +41,7 @@ struct SkyChoice;
 /// a transparent surface has so much less of the light that does not shine or mirror. With an index of
 /// refraction the reflection goes by Fresnel's formula. That light is left out of all that does not shine; so
 /// is the reflection of a surface that lets light through. Metals give highlights and reflections
-/// their colour. A blurred surface mirrors and refracts by facets (facets.h), one for each sample. Within a
+/// their colour. A blurred surface mirrors and refracts by facets (formulas.glsl), one for each sample. Within a
 /// solid, light fades as its interior says. Lights shine through on straight lines, coloured by each surface
 /// and interior. Shadowless lights are not shadowed and have no specular part. Light from discs and from the
 /// sky is the same sum over their parts, e = L dw / pi. It is estimated by one direction for each (two where
@@ -129,7 +127,7 @@ class Shader {
     void share_light(Point& point) const;
     Rgb lit(const Point& point, bool sky_later, SampleStream& random);
     Rgb from_sky(const Point& point, double least, bool shine_only, SampleStream& random);
-    Rgb sky_light(const SkyChoice& choice, const Point& point, double body, Vec3 direction, double least);
+    Rgb sky_light(double front_chance, const Point& point, double body, Vec3 direction, double least);
     Rgb shine(const Point& point, Vec3 to_light) const;
     Rgb follow(Path& path, SampleStream& random, SurfaceHit* first = nullptr, const Known* known = nullptr);
     static double scattered_by(const Point& point);

@@ -17,7 +17,7 @@ namespace {
 /// The line that stands before a picture starts, or "".
 std::string start_text(const Engine& engine, const RenderOptions& render, const DrawStart& start) {
     const std::string seconds = readable_seconds(start.seconds);
-    if (&engine != &engines().front()) {
+    if (engine.name == povray_engine.name) {
         // Besides what the compiler takes, of the same work.
         if (!(start.seconds > 0.5 * render.compile.detail.work_seconds)) return {};
         return fmt::format(
@@ -41,7 +41,7 @@ int run_render(const Options& options) {
     if (options.watch) return run_watch(options);
     ProgressBar bar(!options.quiet);
     RenderOptions render = options.render;
-    render.progressive = options.progressive.value_or(!render.tile && options.engine == &engines().front());
+    render.progressive = options.progressive.value_or(!render.tile && options.engine->progressive);
     render.on_progress = [&](const DrawProgress& progress) { bar.show(progress); };
     render.on_start = [&](const DrawStart& start) {
         if (options.quiet) return;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/languages/languages.h"
+#include "runtime/gpu/device.h"
 #include "runtime/render/render.h"
 #include "tools/graftal/help/completion.h"
 #include "tools/graftal/help/manual.h"
@@ -49,6 +50,11 @@ std::string version_as_json(const CommandTree& tree) {
     nlohmann::ordered_json object = {{"name", "graftal"}, {"version", GRAFTAL_VERSION}};
     for (const Engine& engine : engines())
         object["engines"].push_back(engine.name);
+    object["devices"] = nlohmann::ordered_json::array();
+    for (const GpuInfo& device : gpu_devices())
+        object["devices"].push_back({{"name", device.name},
+                                     {"software", device.is_processor},
+                                     {"memory_bytes", device.memory_bytes}});
     for (const Language& language : languages())
         object["languages"].push_back(language.extension);
     for (const CommandTree* const command : all_commands(tree))

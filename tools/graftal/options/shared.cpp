@@ -276,7 +276,8 @@ std::string engines_text() {
     for (const Engine& engine : engines())
         text +=
             fmt::format("{}{}, {}", &engine == &engines().front() ? ": " : "; ", engine.name, engine.summary);
-    return text + fmt::format(" (default {}: {})", auto_engine, engines().front().name);
+    return text + fmt::format(" (default {}: a graphics card if there is one, else {})", auto_engine,
+                              engines().front().name);
 }
 
 } // namespace
@@ -300,6 +301,10 @@ void add_drawing(CLI::App& app, Options& options) {
     };
     app.add_option_function<std::string>("--engine", engine, engines_text())
         ->type_name(engine_names("|"))
+        ->take_last();
+    app.add_option("--device", options.render.device,
+                   "Graphics card of '--engine gpu', by its number in 'graftal version --json' (default 0)")
+        ->type_name("N")
         ->take_last();
     app.add_option("--samples", options.render.samples,
                    "Samples per pixel under soft light; overrides --quality")

@@ -1,6 +1,6 @@
 // Rough mirrors and rough glass, against the integral of the facets' formula.
 
-#include "runtime/trace/shade/facets.h"
+#include "runtime/trace/shade/formulas.h"
 
 #include <cmath>
 #include <numbers>
@@ -30,7 +30,7 @@ double mirrored_share(double cosine, double blur) {
             const double along = glm::dot(v, h);
             if (!(along > 0)) continue;
             const Vec3 l = 2 * along * h - v;
-            sum += unhidden(cosine, blur) * unhidden(l.z, blur) * along / (cosine * z); // D z dh is even
+            sum += formulas::unhidden(cosine, blur) * formulas::unhidden(l.z, blur) * along / (cosine * z); // D z dh is even
         }
     }
     return sum / (rings * turns);
@@ -60,7 +60,7 @@ TEST(Facets, LookWhereTheViewerSeesThem) {
         for (const Vec3 viewer : {Vec3(0, 0, 1), glm::normalize(Vec3(1, 2, 0.1)), Vec3(1, 0, 0)}) {
             SampleStream random(1, 0);
             for (int i = 0; i < 1000; ++i) {
-                const Vec3 facet = visible_facet({0, 0, 1}, viewer, blur, random.next());
+                const Vec3 facet = formulas::visible_facet({0, 0, 1}, viewer, blur, random.next());
                 EXPECT_NEAR(glm::length(facet), 1, 1e-12);
                 EXPECT_GE(glm::dot(facet, viewer), -1e-12);
                 EXPECT_GE(facet.z, 0);

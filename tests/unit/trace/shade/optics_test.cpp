@@ -1,5 +1,6 @@
 // Metal, clear coats and glass, against closed forms.
 
+#include "runtime/trace/shade/formulas.h"
 #include "runtime/trace/shade/optics.h"
 
 #include <algorithm>
@@ -36,29 +37,29 @@ const Material lamp{.ambient = 0, .diffuse = 0, .specular = 0, .emission = 1};
 TEST(Optics, FresnelsFormulaHasItsKnownValues) {
     for (const double ior : {1.1, 1.33, 1.5, 2.4, 10.0}) {
         const double straight = (ior - 1) / (ior + 1);
-        EXPECT_NEAR(fresnel(ior, 1), straight * straight, 1e-15);
-        EXPECT_NEAR(fresnel(1 / ior, 1), straight * straight, 1e-15);
-        EXPECT_EQ(fresnel(ior, 0), 1);
+        EXPECT_NEAR(formulas::fresnel(ior, 1), straight * straight, 1e-15);
+        EXPECT_NEAR(formulas::fresnel(1 / ior, 1), straight * straight, 1e-15);
+        EXPECT_EQ(formulas::fresnel(ior, 0), 1);
         // At Brewster's angle only light that swings across is reflected, half of it.
         const double across = (ior * ior - 1) / (ior * ior + 1);
-        EXPECT_NEAR(fresnel(ior, 1 / std::sqrt(1 + ior * ior)), 0.5 * across * across, 1e-14);
+        EXPECT_NEAR(formulas::fresnel(ior, 1 / std::sqrt(1 + ior * ior)), 0.5 * across * across, 1e-14);
         // From inside, all beyond the critical angle, and what a ray meets there and back is the same.
         const double critical = std::sqrt(1 - 1 / (ior * ior));
-        EXPECT_EQ(fresnel(1 / ior, 0.999 * critical), 1);
+        EXPECT_EQ(formulas::fresnel(1 / ior, 0.999 * critical), 1);
         const double inside = 0.5 * (1 + critical);
         const double outside = std::sqrt(1 - ior * ior * (1 - inside * inside));
-        EXPECT_NEAR(fresnel(1 / ior, inside), fresnel(ior, outside), 1e-13);
+        EXPECT_NEAR(formulas::fresnel(1 / ior, inside), formulas::fresnel(ior, outside), 1e-13);
     }
-    EXPECT_EQ(fresnel(1, 0.5), 0);
+    EXPECT_EQ(formulas::fresnel(1, 0.5), 0);
 }
 
 TEST(Optics, MetalKeepsItsColourExceptAtGrazingAngles) {
     const Rgb gold(1, 0.7, 0.3);
     for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(metal_colour(1, gold, 1)[c], gold[c], 1e-6);
-        EXPECT_NEAR(metal_colour(1, gold, 0)[c], 1, 0.01);
-        EXPECT_EQ(metal_colour(0, gold, 0.5)[c], 1);
-        EXPECT_NEAR(metal_colour(0.5, gold, 1)[c], 0.5 + 0.5 * gold[c], 1e-6);
+        EXPECT_NEAR(formulas::metal_colour(1, gold, 1)[c], gold[c], 1e-6);
+        EXPECT_NEAR(formulas::metal_colour(1, gold, 0)[c], 1, 0.01);
+        EXPECT_EQ(formulas::metal_colour(0, gold, 0.5)[c], 1);
+        EXPECT_NEAR(formulas::metal_colour(0.5, gold, 1)[c], 0.5 + 0.5 * gold[c], 1e-6);
     }
 }
 

@@ -1,0 +1,464 @@
+#include "runtime/gpu/device.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include <dlfcn.h>
+
+#include <fmt/format.h>
+
+#include "runtime/gpu/vulkan_api.h"
+
+namespace graftal {
+
+namespace vulkan {
+
+struct Api {
+#define GRAFTAL_MEMBER(name) PFN_##name name = nullptr;
+    GRAFTAL_VULKAN_FUNCTIONS(GRAFTAL_MEMBER)
+#undef GRAFTAL_MEMBER
+};
+
+/// The loader's entry; null where there is none. It stays loaded.
+inline PFN_vkGetInstanceProcAddr loader() {
+    static const PFN_vkGetInstanceProcAddr entry = []() -> PFN_vkGetInstanceProcAddr {
+        for (const char* const name : {"libvulkan.so.1", "libvulkan.1.dylib"})
+            if (void* const library = dlopen(name, RTLD_NOW | RTLD_LOCAL))
+                return reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(library, "vkGetInstanceProcAddr"));
+        return nullptr;
+    }();
+    return entry;
+}
+
+inline Status failure(std::string_view what, VkResult result) {
+    const std::string_view why = result == VK_ERROR_OUT_OF_DEVICE_MEMORY ? "the device has no memory left"
+                                 : result == VK_ERROR_OUT_OF_HOST_MEMORY ? "no memory is left"
+                                 : result == VK_ERROR_DEVICE_LOST        ? "the device was lost"
+                                                                         : "";
+    if (!why.empty()) return Status::failure(fmt::format("GPU: {}: {}", what, why));
+    return Status::failure(
+        fmt::format("GPU: {} failed (Vulkan's result {})", what, static_cast<int>(result)));
+}
+
+/// An instance and its functions.
+class Instance {
+  public:
+    static std::optional<Instance> make(std::string& why) {
+        const PFN_vkGetInstanceProcAddr entry = loader();
+        if (!entry) {
+            why = "no Vulkan loader (libvulkan.so.1) is installed";
+            return std::nullopt;
+        }
+        const auto create = reinterpret_cast<PFN_vkCreateInstance>(entry(nullptr, "vkCreateInstance"));
+        const VkApplicationInfo application{
+            VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "graftal", 1, "graftal", 1, VK_API_VERSION_1_2};
+        VkInstanceCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+        info.pApplicationInfo = &application;
+        VkInstance handle = VK_NULL_HANDLE;
+        if (!create || create(&info, nullptr, &handle) != VK_SUCCESS) {
+            why = "no driver of Vulkan 1.2 is installed";
+            return std::nullopt;
+        }
+        vulkan::Instance instance;
+        instance.handle = handle;
+#define GRAFTAL_LOAD(name) instance.api.name = reinterpret_cast<PFN_##name>(entry(handle, #name));
+        GRAFTAL_VULKAN_FUNCTIONS(GRAFTAL_LOAD)
+#undef GRAFTAL_LOAD
+        return instance;
+    }
+    Instance(Instance&& other) noexcept
+        : api(other.api), handle(std::exchange(other.handle, VK_NULL_HANDLE)) {}
+    Instance& operator=(Instance&&) = delete;
+    ~Instance() {
+        if (handle) api.vkDestroyInstance(handle, nullptr);
+    }
+
+    /// Devices of Vulkan 1.2, real ones first.
+    std::vector<VkPhysicalDevice> devices() const {
+        std::uint32_t count = 0;
+        api.vkEnumeratePhysicalDevices(handle, &count, nullptr);
+        std::vector<VkPhysicalDevice> devices(count);
+        api.vkEnumeratePhysicalDevices(handle, &count, devices.data());
+        devices.resize(count);
+        std::erase_if(devices, [&](VkPhysicalDevice device) {
+            return properties(device).apiVersion < VK_API_VERSION_1_2 || !queue_family(device);
+        });
+        std::ranges::stable_partition(devices,
+                                      [&](VkPhysicalDevice device) { return !info(device).is_processor; });
+        return devices;
+    }
+
+    VkPhysicalDeviceProperties properties(VkPhysicalDevice device) const {
+        VkPhysicalDeviceProperties properties{};
+        api.vkGetPhysicalDeviceProperties(device, &properties);
+        return properties;
+    }
+
+    VkPhysicalDeviceMemoryProperties memory(VkPhysicalDevice device) const {
+        VkPhysicalDeviceMemoryProperties memory{};
+        api.vkGetPhysicalDeviceMemoryProperties(device, &memory);
+        return memory;
+    }
+
+    GpuInfo info(VkPhysicalDevice device) const {
+        const VkPhysicalDeviceProperties facts = properties(device);
+        GpuInfo info{facts.deviceName, facts.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU, 0};
+        const VkPhysicalDeviceMemoryProperties heaps = memory(device);
+        for (std::uint32_t i = 0; i < heaps.memoryHeapCount; ++i)
+            if (heaps.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
+                info.memory_bytes = std::max<std::uint64_t>(info.memory_bytes, heaps.memoryHeaps[i].size);
+        return info;
+    }
+
+    std::optional<std::uint32_t> queue_family(VkPhysicalDevice device) const {
+        std::uint32_t count = 0;
+        api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+        std::vector<VkQueueFamilyProperties> families(count);
+        api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+        for (std::uint32_t i = 0; i < count; ++i)
+            if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) return i;
+        return std::nullopt;
+    }
+
+    Api api;
+    VkInstance handle = VK_NULL_HANDLE;
+
+  private:
+    Instance() = default;
+};
+
+} // namespace vulkan
+
+using vulkan::Api, vulkan::failure;
+
+std::vector<GpuInfo> gpu_devices(std::string* why) {
+    std::string reason = "Vulkan has no device here";
+    std::vector<GpuInfo> found;
+    if (const std::optional<vulkan::Instance> instance = vulkan::Instance::make(reason))
+        for (const VkPhysicalDevice device : instance->devices())
+            found.push_back(instance->info(device));
+    if (why && found.empty()) *why = reason;
+    return found;
+}
+
+struct Gpu::Buffer {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkDeviceSize size = 0;
+};
+
+struct Gpu::Parts {
+    explicit Parts(vulkan::Instance made) : instance(std::move(made)) {}
+
+    ~Parts() {
+        const Api& api = instance.api;
+        if (!device) return;
+        api.vkDeviceWaitIdle(device);
+        for (Buffer& buffer : buffers)
+            free(buffer);
+        free(stage);
+        if (fence) api.vkDestroyFence(device, fence, nullptr);
+        if (pool) api.vkDestroyCommandPool(device, pool, nullptr);
+        if (sets) api.vkDestroyDescriptorPool(device, sets, nullptr);
+        if (pipeline) api.vkDestroyPipeline(device, pipeline, nullptr);
+        if (layout) api.vkDestroyPipelineLayout(device, layout, nullptr);
+        if (set_layout) api.vkDestroyDescriptorSetLayout(device, set_layout, nullptr);
+        api.vkDestroyDevice(device, nullptr);
+    }
+
+    Status open(VkPhysicalDevice physical) {
+        const Api& api = instance.api;
+        memory = instance.memory(physical);
+        const std::uint32_t family = *instance.queue_family(physical);
+        const float priority = 1;
+        VkDeviceQueueCreateInfo queues{};
+        queues.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+        queues.queueFamilyIndex = family;
+        queues.queueCount = 1;
+        queues.pQueuePriorities = &priority;
+        VkDeviceCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+        info.queueCreateInfoCount = 1;
+        info.pQueueCreateInfos = &queues;
+        if (const VkResult result = api.vkCreateDevice(physical, &info, nullptr, &device);
+            result != VK_SUCCESS)
+            return failure("opening the device", result);
+        api.vkGetDeviceQueue(device, family, 0, &queue);
+        VkCommandPoolCreateInfo of_pool{};
+        of_pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+        of_pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+        of_pool.queueFamilyIndex = family;
+        if (const VkResult result = api.vkCreateCommandPool(device, &of_pool, nullptr, &pool);
+            result != VK_SUCCESS)
+            return failure("making a command pool", result);
+        VkCommandBufferAllocateInfo of_commands{};
+        of_commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+        of_commands.commandPool = pool;
+        of_commands.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+        of_commands.commandBufferCount = 1;
+        if (const VkResult result = api.vkAllocateCommandBuffers(device, &of_commands, &commands);
+            result != VK_SUCCESS)
+            return failure("making a command buffer", result);
+        VkFenceCreateInfo of_fence{};
+        of_fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+        if (const VkResult result = api.vkCreateFence(device, &of_fence, nullptr, &fence);
+            result != VK_SUCCESS)
+            return failure("making a fence", result);
+        return make_buffer(stage_bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                           true, stage);
+    }
+
+    /// `by_host`: where the host reads and writes; else where the device does so fastest.
+    Status make_buffer(VkDeviceSize size, VkBufferUsageFlags usage, bool by_host, Buffer& made) {
+        const Api& api = instance.api;
+        VkBufferCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+        info.size = size;
+        info.usage = usage;
+        made.size = size;
+        if (const VkResult result = api.vkCreateBuffer(device, &info, nullptr, &made.buffer);
+            result != VK_SUCCESS)
+            return failure("making a buffer", result);
+        VkMemoryRequirements needs{};
+        api.vkGetBufferMemoryRequirements(device, made.buffer, &needs);
+        constexpr VkMemoryPropertyFlags coherent =
+            VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+        const std::array<VkMemoryPropertyFlags, 2> wanted = {
+            by_host ? coherent | VK_MEMORY_PROPERTY_HOST_CACHED_BIT
+                    : VkMemoryPropertyFlags{VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT},
+            by_host ? coherent : VkMemoryPropertyFlags{0}};
+        VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+        for (const VkMemoryPropertyFlags flags : wanted)
+            for (std::uint32_t type = 0; type < memory.memoryTypeCount && result != VK_SUCCESS; ++type) {
+                if (!(needs.memoryTypeBits >> type & 1) ||
+                    (memory.memoryTypes[type].propertyFlags & flags) != flags)
+                    continue;
+                VkMemoryAllocateInfo of_memory{};
+                of_memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+                of_memory.allocationSize = needs.size;
+                of_memory.memoryTypeIndex = type;
+                result = api.vkAllocateMemory(device, &of_memory, nullptr, &made.memory);
+            }
+        if (result != VK_SUCCESS) return failure(fmt::format("a buffer of {} bytes", size), result);
+        if (result = api.vkBindBufferMemory(device, made.buffer, made.memory, 0); result != VK_SUCCESS)
+            return failure("binding memory", result);
+        if (!by_host) return {};
+        void* mapped = nullptr;
+        if (result = api.vkMapMemory(device, made.memory, 0, VK_WHOLE_SIZE, 0, &mapped); result != VK_SUCCESS)
+            return failure("mapping memory", result);
+        staged = static_cast<std::byte*>(mapped);
+        return {};
+    }
+
+    void free(Buffer& buffer) {
+        const Api& api = instance.api;
+        if (buffer.buffer) api.vkDestroyBuffer(device, buffer.buffer, nullptr);
+        if (buffer.memory) api.vkFreeMemory(device, buffer.memory, nullptr);
+        buffer = {};
+    }
+
+    /// Records commands by `record`, submits them and waits.
+    template<typename Record> Status submit(const Record& record) {
+        const Api& api = instance.api;
+        VkCommandBufferBeginInfo begin{};
+        begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+        begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+        VkResult result = api.vkBeginCommandBuffer(commands, &begin);
+        if (result == VK_SUCCESS) {
+            record();
+            result = api.vkEndCommandBuffer(commands);
+        }
+        VkSubmitInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+        info.commandBufferCount = 1;
+        info.pCommandBuffers = &commands;
+        if (result == VK_SUCCESS) result = api.vkResetFences(device, 1, &fence);
+        if (result == VK_SUCCESS) result = api.vkQueueSubmit(queue, 1, &info, fence);
+        if (result == VK_SUCCESS) result = api.vkWaitForFences(device, 1, &fence, VK_TRUE, longest_wait_ns);
+        if (result == VK_TIMEOUT)
+            return Status::failure("GPU: the device takes too long for a part of the picture");
+        return result == VK_SUCCESS ? Status() : failure("running the kernel", result);
+    }
+
+    /// What one command writes, the next reads.
+    void wait_for_writes() {
+        VkMemoryBarrier barrier{};
+        barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+        barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+        barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+        instance.api.vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                                          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0,
+                                          1, &barrier, 0, nullptr, 0, nullptr);
+    }
+
+    /// Copies between the stage and a place in a buffer.
+    Status copy(Buffer& buffer, VkDeviceSize at, VkDeviceSize bytes, bool to_device) {
+        return submit([&] {
+            wait_for_writes();
+            const VkBufferCopy region{to_device ? 0 : at, to_device ? at : 0, bytes};
+            instance.api.vkCmdCopyBuffer(commands, to_device ? stage.buffer : buffer.buffer,
+                                         to_device ? buffer.buffer : stage.buffer, 1, &region);
+            wait_for_writes();
+        });
+    }
+
+    static constexpr VkDeviceSize stage_bytes = 16 << 20;
+    static constexpr std::uint64_t longest_wait_ns = 60'000'000'000;
+
+    vulkan::Instance instance;
+    VkPhysicalDeviceMemoryProperties memory{};
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;
+    VkCommandPool pool = VK_NULL_HANDLE;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    VkFence fence = VK_NULL_HANDLE;
+    Buffer stage;
+    std::byte* staged = nullptr;
+    VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    VkDescriptorPool sets = VK_NULL_HANDLE;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    std::vector<Buffer> buffers;
+};
+
+Gpu::Gpu(std::unique_ptr<Parts> parts, GpuInfo info) : parts_(std::move(parts)), info_(std::move(info)) {}
+Gpu::~Gpu() = default;
+
+std::unique_ptr<Gpu> Gpu::open(std::size_t number, Status& status) {
+    std::string why;
+    std::optional<vulkan::Instance> instance = vulkan::Instance::make(why);
+    if (!instance) {
+        status = Status::failure("GPU: " + why);
+        return nullptr;
+    }
+    const std::vector<VkPhysicalDevice> devices = instance->devices();
+    if (number >= devices.size()) {
+        status = Status::failure(fmt::format("GPU: there is no device number {}", number));
+        return nullptr;
+    }
+    GpuInfo info = instance->info(devices[number]);
+    auto parts = std::make_unique<Parts>(std::move(*instance));
+    status = parts->open(devices[number]);
+    if (!status.ok()) return nullptr;
+    return std::unique_ptr<Gpu>(new Gpu(std::move(parts), std::move(info)));
+}
+
+Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std::uint32_t push_bytes) {
+    const Api& api = parts_->instance.api;
+    const VkDevice device = parts_->device;
+    std::vector<VkDescriptorSetLayoutBinding> bindings;
+    for (std::size_t i = 0; i < buffers; ++i)
+        bindings.push_back({static_cast<std::uint32_t>(i), VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+                            VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+    VkDescriptorSetLayoutCreateInfo of_set{};
+    of_set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    of_set.bindingCount = static_cast<std::uint32_t>(bindings.size());
+    of_set.pBindings = bindings.data();
+    VkResult result = api.vkCreateDescriptorSetLayout(device, &of_set, nullptr, &parts_->set_layout);
+    const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
+    VkPipelineLayoutCreateInfo of_layout{};
+    of_layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    of_layout.setLayoutCount = 1;
+    of_layout.pSetLayouts = &parts_->set_layout;
+    of_layout.pushConstantRangeCount = 1;
+    of_layout.pPushConstantRanges = &range;
+    if (result == VK_SUCCESS)
+        result = api.vkCreatePipelineLayout(device, &of_layout, nullptr, &parts_->layout);
+    VkShaderModuleCreateInfo of_module{};
+    of_module.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    of_module.codeSize = spirv.size_bytes();
+    of_module.pCode = spirv.data();
+    VkShaderModule module = VK_NULL_HANDLE;
+    if (result == VK_SUCCESS) result = api.vkCreateShaderModule(device, &of_module, nullptr, &module);
+    VkComputePipelineCreateInfo of_pipeline{};
+    of_pipeline.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+    of_pipeline.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    of_pipeline.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+    of_pipeline.stage.module = module;
+    of_pipeline.stage.pName = "main";
+    of_pipeline.layout = parts_->layout;
+    if (result == VK_SUCCESS)
+        result =
+            api.vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &of_pipeline, nullptr, &parts_->pipeline);
+    if (module) api.vkDestroyShaderModule(device, module, nullptr);
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, static_cast<std::uint32_t>(buffers)};
+    VkDescriptorPoolCreateInfo of_pool{};
+    of_pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    of_pool.maxSets = 1;
+    of_pool.poolSizeCount = 1;
+    of_pool.pPoolSizes = &size;
+    if (result == VK_SUCCESS) result = api.vkCreateDescriptorPool(device, &of_pool, nullptr, &parts_->sets);
+    VkDescriptorSetAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    allocate.descriptorPool = parts_->sets;
+    allocate.descriptorSetCount = 1;
+    allocate.pSetLayouts = &parts_->set_layout;
+    if (result == VK_SUCCESS) result = api.vkAllocateDescriptorSets(device, &allocate, &parts_->set);
+    return result == VK_SUCCESS ? Status() : failure("making the kernel", result);
+}
+
+Status Gpu::add_buffer(std::span<const std::byte> bytes, std::size_t size) {
+    Parts& parts = *parts_;
+    const Api& api = parts.instance.api;
+    constexpr VkDeviceSize least = 16;
+    const VkDeviceSize whole = (std::max<VkDeviceSize>({bytes.size(), size, least}) + 15) / 16 * 16;
+    Buffer& buffer = parts.buffers.emplace_back();
+    constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    if (Status status = parts.make_buffer(whole, usage, false, buffer); !status.ok()) return status;
+    if (bytes.size() < whole)
+        if (Status status = parts.submit(
+                [&] { api.vkCmdFillBuffer(parts.commands, buffer.buffer, 0, VK_WHOLE_SIZE, 0); });
+            !status.ok())
+            return status;
+    for (std::size_t at = 0; at < bytes.size(); at += Parts::stage_bytes) {
+        const std::size_t piece = std::min<std::size_t>(bytes.size() - at, Parts::stage_bytes);
+        std::memcpy(parts.staged, bytes.data() + at, piece);
+        if (Status status = parts.copy(buffer, at, piece, true); !status.ok()) return status;
+    }
+    const VkDescriptorBufferInfo info{buffer.buffer, 0, VK_WHOLE_SIZE};
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = parts.set;
+    write.dstBinding = static_cast<std::uint32_t>(parts.buffers.size() - 1);
+    write.descriptorCount = 1;
+    write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    write.pBufferInfo = &info;
+    api.vkUpdateDescriptorSets(parts.device, 1, &write, 0, nullptr);
+    return {};
+}
+
+Status Gpu::read(std::size_t binding, std::span<std::byte> bytes) {
+    Parts& parts = *parts_;
+    for (std::size_t at = 0; at < bytes.size(); at += Parts::stage_bytes) {
+        const std::size_t piece = std::min<std::size_t>(bytes.size() - at, Parts::stage_bytes);
+        if (Status status = parts.copy(parts.buffers[binding], at, piece, false); !status.ok()) return status;
+        std::memcpy(bytes.data() + at, parts.staged, piece);
+    }
+    return {};
+}
+
+Status Gpu::run(std::span<const std::byte> push, std::uint32_t groups, double& seconds) {
+    Parts& parts = *parts_;
+    const Api& api = parts.instance.api;
+    const auto begin = std::chrono::steady_clock::now();
+    const Status status = parts.submit([&] {
+        parts.wait_for_writes();
+        api.vkCmdBindPipeline(parts.commands, VK_PIPELINE_BIND_POINT_COMPUTE, parts.pipeline);
+        api.vkCmdBindDescriptorSets(parts.commands, VK_PIPELINE_BIND_POINT_COMPUTE, parts.layout, 0, 1,
+                                    &parts.set, 0, nullptr);
+        api.vkCmdPushConstants(parts.commands, parts.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                               static_cast<std::uint32_t>(push.size()), push.data());
+        api.vkCmdDispatch(parts.commands, groups, 1, 1);
+    });
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return status;
+}
+
+} // namespace graftal

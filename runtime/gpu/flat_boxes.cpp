@@ -1,0 +1,133 @@
+#include "runtime/gpu/flat_boxes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "runtime/gpu/flat_model.h"
+#include "runtime/gpu/flat_words.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t most_children = 4;
+
+double half_area(const Box& box) {
+    if (box.empty()) return 0;
+    const Vec3 size = box.max - box.min;
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+struct Group {
+    std::span<FlatItem> items;
+    Box box;
+};
+
+Group group_of(std::span<FlatItem> items) {
+    Group group{items, {}};
+    for (const FlatItem& item : items)
+        group.box.include(item.box);
+    return group;
+}
+
+void sort_along(int axis, std::span<FlatItem> items) {
+    std::ranges::sort(items, {}, [axis](const FlatItem& item) {
+        return std::pair(item.box.min[axis] + item.box.max[axis], item.entry);
+    });
+}
+
+/// The two parts of a group for which rays are tested least.
+std::array<Group, 2> split(const Group& group) {
+    const std::span<FlatItem> items = group.items;
+    std::vector<double> rest(items.size() + 1);
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t place = items.size() / 2;
+    int best_axis = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        sort_along(axis, items);
+        Box box;
+        for (std::size_t i = items.size() - 1; i > 0; --i) {
+            box.include(items[i].box);
+            rest[i] = half_area(box) * static_cast<double>(items.size() - i);
+        }
+        box = Box();
+        for (std::size_t i = 1; i < items.size(); ++i) {
+            box.include(items[i - 1].box);
+            const double cost = half_area(box) * static_cast<double>(i) + rest[i];
+            if (!(cost < least)) continue;
+            least = cost;
+            place = i;
+            best_axis = axis;
+        }
+    }
+    if (best_axis != 2) sort_along(best_axis, items);
+    return {group_of(items.first(place)), group_of(items.subspan(place))};
+}
+
+class Builder {
+  public:
+    explicit Builder(std::vector<glm::vec4>& boxes) : boxes_(boxes) {}
+
+    std::uint32_t build(std::span<FlatItem> items, int depth) {
+        std::vector<Group> groups = {group_of(items)};
+        while (groups.size() < most_children) {
+            const auto larger = [](const Group& a, const Group& b) {
+                return (a.items.size() > 1 ? half_area(a.box) + 1e-300 : 0) <
+                       (b.items.size() > 1 ? half_area(b.box) + 1e-300 : 0);
+            };
+            const auto largest = std::ranges::max_element(groups, larger);
+            if (largest->items.size() < 2) break;
+            // Coincident items make lopsided trees: halves end after the logarithm of their number.
+            const std::size_t half = largest->items.size() / 2;
+            const auto [first, second] = depth < most_depth
+                                             ? split(*largest)
+                                             : std::array{group_of(largest->items.first(half)),
+                                                          group_of(largest->items.subspan(half))};
+            *largest = first;
+            groups.push_back(second);
+        }
+        const std::size_t node = boxes_.size();
+        boxes_.resize(node + BOX_SIZE, glm::vec4(0));
+        for (std::size_t i = 0; i < most_children; ++i) {
+            const std::size_t at = node + 2 * i;
+            if (i >= groups.size()) {
+                boxes_[at] = glm::vec4(1, 1, 1, flat_bits(NONE));
+                boxes_[at + 1] = glm::vec4(-1, -1, -1, 0);
+                continue;
+            }
+            const Group& group = groups[i];
+            const std::uint32_t entry =
+                group.items.size() == 1 ? group.items[0].entry : build(group.items, depth + 1);
+            boxes_[at] = corner(group.box.min, -1, entry);
+            boxes_[at + 1] = corner(group.box.max, 1, 0);
+        }
+        return static_cast<std::uint32_t>(node / BOX_SIZE);
+    }
+
+  private:
+    static constexpr int most_depth = 40;
+
+    static glm::vec4 corner(Vec3 at, double side, std::uint32_t word) {
+        constexpr double rounding = 2e-6, least_size = 0.05;
+        glm::vec4 result(0, 0, 0, flat_bits(word));
+        for (int i = 0; i < 3; ++i)
+            result[i] = static_cast<float>(at[i] + side * rounding * std::max(std::abs(at[i]), least_size));
+        return result;
+    }
+
+    std::vector<glm::vec4>& boxes_;
+};
+
+} // namespace
+
+std::uint32_t build_flat_boxes(std::vector<FlatItem>& items, std::vector<glm::vec4>& boxes) {
+    std::erase_if(items, [](const FlatItem& item) { return item.box.empty(); });
+    if (items.empty()) return NONE;
+    return Builder(boxes).build(items, 0);
+}
+
+} // namespace graftal

@@ -1,0 +1,196 @@
+#include "runtime/gpu/flat_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "compiler/support/axes_across.h"
+#include "runtime/gpu/flat_words.h"
+#include "runtime/trace/pixel_filter.h"
+
+namespace graftal {
+
+namespace {
+
+using kernel_layout::Lamp;
+using kernel_layout::Scene;
+
+/// Boxes and parts that one ray may go to, and those that it may go to when all that can be is culled.
+constexpr std::uint32_t most_steps = 1 << 16, more_steps = 1 << 12;
+
+void add_material(const Material& material, FlatModel& flat) {
+    const Interior interior = interior_of(material);
+    const auto add = [&](double x, double y, double z, double w) {
+        flat.materials.push_back(flat_four({x, y, z}, w));
+    };
+    flat.materials.push_back(flat_four(material.rgb, material.ambient));
+    add(material.diffuse, material.specular, material.roughness, material.reflection);
+    add(material.translucency, material.emission, material.metallic, material.transparency);
+    add(material.filter, material.ior, material.blur, 0);
+    flat.materials.push_back(flat_four(interior.absorbed, interior.ior));
+    add(0, 0, 0, 0);
+}
+
+std::uint32_t last_material(const FlatModel& flat) {
+    return static_cast<std::uint32_t>(flat.materials.size() / MATERIAL_SIZE) - 1;
+}
+
+/// Lights as the shader has them (Shader::Shader()).
+void add_lamps(const View& view, Scene& scene) {
+    constexpr double least_light = 1e-10;
+    std::uint32_t count = 0;
+    const auto add = [&](const Light& light, bool area) {
+        if (count == MOST_LAMPS || std::max({light.rgb.r, light.rgb.g, light.rgb.b}) < least_light) return;
+        Lamp& lamp = scene.lamps[count++];
+        const Vec3 at = light.sun ? glm::normalize(light.location) : light.location - view.camera.location;
+        lamp.at = flat_four(at, light.sun ? 1 : 0);
+        lamp.rgb = flat_four(light.rgb, light.shadowless ? 1 : 0);
+        if (!area) return;
+        Vec3 a = light.a, b = light.b;
+        bool round = light.round;
+        if (light.is_disc()) {
+            const AxesAcross axes = axes_across(at);
+            const double radius = std::tan(0.5 * light.angle_deg * std::numbers::pi / 180);
+            a = radius * axes.a;
+            b = radius * axes.b;
+            round = true;
+        }
+        lamp.a = flat_four(a, round ? 1 : 0);
+        lamp.b = flat_four(b, 1);
+    };
+    // Points come first, as in the shader: random numbers are taken in the order of the areas.
+    for (const bool area : {false, true})
+        for (const Light& light : view.lights)
+            if ((light.is_area() || light.is_disc()) == area) add(light, area);
+    scene.counts.x = count;
+}
+
+void add_sky(const View& view, FlatModel& flat) {
+    Scene& scene = flat.scene;
+    scene.sky_zenith = flat_four(view.sky.zenith, view.sky.from);
+    scene.sky_horizon = flat_four(view.sky.horizon, 1 / (view.sky.to - view.sky.from));
+    scene.sky_axis = flat_four(view.sky.axis, view.shows_sky_light ? 1 : 0);
+    if (!view.sky_light) {
+        scene.ambient = flat_four(Rgb(1.0));
+        return;
+    }
+    const SkyLight& light = *view.sky_light;
+    const bool bounces = light.bounces > 0;
+    scene.ambient = flat_four(bounces ? Rgb(0.0) : view.ambient_light());
+    scene.counts.w = bounces ? light.bounces : 0;
+    scene.light_up = flat_four(light.up, light.picture ? LIGHT_PICTURE
+                                         : light.clear ? LIGHT_CLEAR
+                                                       : LIGHT_GRADIENT);
+    scene.light_zenith = flat_four(light.zenith, light.brightness);
+    scene.light_horizon = flat_four(light.horizon, SkyLight::full_height);
+    scene.light_below = flat_four(light.below);
+    if (light.clear && !light.picture) {
+        scene.light_zenith.w = static_cast<float>(light.brightness / ClearSky::kcd_of_paper);
+        scene.clear_sun = flat_four(light.clear->to_sun, ClearSky::least_height);
+        scene.clear_zenith = flat_four(light.clear->zenith_yxy);
+        int number = 0;
+        for (const auto& row : light.clear->perez)
+            for (const double value : row) {
+                scene.perez[number / 4][number % 4] = static_cast<float>(value);
+                ++number;
+            }
+    }
+    if (!light.picture) return;
+    const SkyPicture& picture = *light.picture;
+    for (int i = 0; i < 3; ++i)
+        scene.picture_from_world[i] = flat_four(light.picture_from_world[i]);
+    scene.picture_from_world[0].w = static_cast<float>(picture.width());
+    scene.picture_from_world[1].w = static_cast<float>(picture.height());
+    scene.picture_from_world[2].w = picture.sampling().any() ? 1 : 0;
+    for (const SkyPicture::Texel& texel : picture.texels())
+        flat.texels.insert(flat.texels.end(), texel.begin(), texel.end());
+    for (const double sum : picture.sampling().rows())
+        flat.texels.push_back(static_cast<float>(sum));
+    const std::span<const float> columns = picture.sampling().columns();
+    flat.texels.insert(flat.texels.end(), columns.begin(), columns.end());
+}
+
+void add_camera(const FlatRequest& request, Scene& scene) {
+    const View& view = request.view;
+    const Camera& camera = view.camera;
+    const double half_width =
+        camera.orthographic ? 0.5 * camera.width : std::tan(camera.angle_deg * std::numbers::pi / 360);
+    const double shape = static_cast<double>(view.size.height) / view.size.width;
+    scene.right = flat_four(camera.right, half_width);
+    scene.up = flat_four(camera.up, half_width * shape);
+    scene.direction = flat_four(camera.direction, camera.orthographic ? 1 : 0);
+    const double pixel = 2 * half_width / view.size.width;
+    scene.lens = {static_cast<float>(view.lens.radius), static_cast<float>(view.lens.depth),
+                  static_cast<float>(pixel), 0};
+    const DetailOptions& detail = request.detail;
+    const double unit_px = camera.orthographic ? view.size.width / camera.width : 1 / pixel;
+    scene.projection = {static_cast<float>(unit_px / std::max(detail.error_px, 1e-30)),
+                        static_cast<float>(nearest_to_eye(request.prepared.cut)),
+                        static_cast<float>(detail.error_world.value_or(0)), detail.culls() ? 1.0f : 0.0f};
+    const auto edge = [&](double tangent) {
+        return std::pair(tangent / std::hypot(1, tangent), 1 / std::hypot(1, tangent));
+    };
+    if (camera.orthographic) {
+        scene.edges = flat_four({half_width, 1, half_width * shape}, 1);
+    } else {
+        const auto across = edge(half_width), above = edge(half_width * shape);
+        scene.edges = flat_four({across.first, across.second, above.first}, above.second);
+    }
+    constexpr double infinite = 1e30;
+    const ShaderLimits& limits = request.limits;
+    scene.limits = {static_cast<float>(std::min(limits.farthest, infinite)),
+                    static_cast<float>(limits.least_weight), 0,
+                    static_cast<float>(request.sampling.noise_255)};
+    scene.visits.x = most_steps;
+    scene.visits.y = more_steps;
+}
+
+} // namespace
+
+void add_light(const FlatRequest& request, FlatModel& flat) {
+    const View& view = request.view;
+    Scene& scene = flat.scene;
+    add_material(Material(), flat);
+    for (const Material& material : request.prepared.cut.materials)
+        add_material(material, flat);
+    add_lamps(view, scene);
+    add_sky(view, flat);
+    add_camera(request, scene);
+    bool opaque = std::ranges::none_of(request.prepared.cut.materials, &Material::is_transparent);
+    if (view.ground) {
+        const bool clear = view.ground->material.is_transparent();
+        add_material(view.ground->material, flat);
+        scene.visits.z = last_material(flat);
+        scene.ground = flat_four({view.ground->height - view.camera.location.y, 1, clear ? 1.0 : 0.0});
+        opaque = opaque && !clear;
+    }
+    if (view.catcher) {
+        Material paper;
+        paper.rgb = view.catcher->rgb;
+        paper.ambient = 0;
+        paper.diffuse = 1;
+        paper.specular = 0;
+        add_material(paper, flat);
+        scene.visits.w = last_material(flat);
+        scene.catcher = flat_four(view.catcher->centre - view.camera.location, view.catcher->radius);
+    }
+    if (view.haze) {
+        scene.haze = flat_four({view.haze->distance, view.haze->base - view.camera.location.y,
+                                view.haze->is_even() ? 0 : view.haze->height});
+        scene.haze_rgb = flat_four(view.haze->rgb);
+    }
+    scene.ambient.w = static_cast<float>(view.film.exposure);
+    scene.sampling = {0, 0, view.film.soft ? 1 : 0, opaque ? 1 : 0};
+    scene.tables.x = static_cast<std::uint32_t>(flat.texels.size());
+    const PixelFilter filter;
+    static_assert(PixelFilter::steps == FILTER_STEPS);
+    for (const double offset : filter.offsets())
+        flat.texels.push_back(static_cast<float>(offset));
+}
+
+} // namespace graftal

@@ -1,0 +1,188 @@
+#include "runtime/gpu/flat_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "compiler/primitives/tapered.h"
+#include "compiler/primitives/tessellate.h"
+#include "compiler/support/stage_price.h"
+#include "runtime/gpu/flat_boxes.h"
+#include "runtime/gpu/flat_light.h"
+#include "runtime/gpu/flat_words.h"
+
+namespace graftal {
+
+namespace {
+
+/// Of 32 bits less the kind of an entry.
+constexpr std::size_t most_edges = ENTRY_NUMBER;
+
+glm::vec4 of_paint(const Paint& paint) {
+    return {paint.fixed[0], paint.fixed[1], paint.fixed[2], paint.open};
+}
+
+/// Material 0 is that of what names none.
+std::uint32_t material_number(std::uint32_t material) {
+    return material == flat_none ? NONE : material + 1;
+}
+
+Box box_of(const FlatEdge& edge) {
+    return {{edge.box[0], edge.box[1], edge.box[2]}, {edge.box[3], edge.box[4], edge.box[5]}};
+}
+
+class Flattener {
+  public:
+    Flattener(const FlatGraph& graph, FlatModel& flat) : graph_(graph), flat_(flat) {}
+
+    void run(Vec3 eye, const Box& drawn, std::uint32_t root_steps) {
+        for (const Primitive& primitive : graph_.primitives)
+            meshes_.push_back(mesh_of(primitive));
+        add_root(eye);
+        for (const FlatEdge& edge : graph_.edges)
+            add_edge(edge);
+        for (const FlatNode& node : graph_.nodes)
+            add_node(node);
+        std::vector<FlatItem> root = {{{drawn.min - eye, drawn.max - eye}, ENTRY_PART}};
+        flat_.scene.counts.y = build_flat_boxes(root, flat_.boxes);
+        flat_.scene.counts.z = root_steps;
+    }
+
+  private:
+    /// The part that leads from the world to the root; those of the edges follow.
+    void add_root(Vec3 eye) {
+        const Affine& place = graph_.world_from_root;
+        FlatEdge edge;
+        edge.child = graph_.root;
+        edge.stretch = static_cast<float>(place.linear[0][0]);
+        const Mat3 inverse_linear = inverse(place).linear;
+        for (int k = 0; k < 3; ++k) {
+            for (int row = 0; row < 3; ++row)
+                edge.child_from_parent[static_cast<std::size_t>(3 * k + row)] =
+                    FloatPair(inverse_linear[k][row]);
+            edge.origin[static_cast<std::size_t>(k)] = FloatPair(place.translation[k] - eye[k]);
+        }
+        add_edge(edge);
+    }
+
+    void add_edge(const FlatEdge& edge) {
+        const auto& m = edge.child_from_parent;
+        for (std::size_t row = 0; row < 3; ++row)
+            flat_.parts.emplace_back(m[row].high, m[3 + row].high, m[6 + row].high, edge.origin[row].high);
+        flat_.parts.emplace_back(edge.stretch, flat_bits(edge.child),
+                                 flat_bits(material_number(edge.material)), flat_bits(edge.levels));
+        flat_.looks.push_back(of_paint(edge.tint));
+    }
+
+    void add_node(const FlatNode& node) {
+        std::uint32_t flags = 0, tree = NONE, stop_tree = NONE;
+        float shape = 0;
+        if (node.primitive != flat_none) {
+            const Primitive& primitive = graph_.primitives[node.primitive];
+            tree = meshes_[node.primitive];
+            flags =
+                NODE_PRIMITIVE | (tree == NONE ? static_cast<std::uint32_t>(primitive.kind()) : KIND_MESH);
+            if (primitive == PrimitiveKind::cylinder || primitive == PrimitiveKind::cone ||
+                primitive == PrimitiveKind::frustum)
+                shape = static_cast<float>(top_radius(primitive));
+        } else {
+            if (node.unending) flags |= NODE_UNENDING;
+            if (node.terminal) flags |= NODE_TERMINAL;
+            tree = tree_of(node.first_edge, node.edge_count);
+            stop_tree = tree_of(node.first_edge + node.edge_count, node.stop_edge_count);
+        }
+        flat_.nodes.emplace_back(node.centre[0], node.centre[1], node.centre[2], 0.5f * node.diameter);
+        flat_.nodes.emplace_back(node.cut_detail, flat_bits(flags), flat_bits(tree), flat_bits(stop_tree));
+        Affine frame_from_proxy;
+        for (std::size_t i = 0; i < 12; ++i)
+            (i < 9 ? frame_from_proxy.linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]
+                   : frame_from_proxy.translation[static_cast<int>(i - 9)]) = node.frame_from_proxy[i];
+        const Affine proxy_from_frame = is_singular(frame_from_proxy) ? Affine() : inverse(frame_from_proxy);
+        for (int row = 0; row < 3; ++row)
+            flat_.nodes.push_back(flat_four({proxy_from_frame.linear[0][row], proxy_from_frame.linear[1][row],
+                                             proxy_from_frame.linear[2][row]},
+                                            proxy_from_frame.translation[row]));
+        flat_.nodes.push_back(of_paint(node.mean));
+        flat_.nodes.push_back(of_paint(node.proxy));
+        flat_.nodes.emplace_back(flat_bits(material_number(node.finish)), 0.0f, shape, 0.0f);
+    }
+
+    std::uint32_t tree_of(std::uint32_t first, std::uint32_t count) {
+        std::vector<FlatItem> items;
+        for (std::uint32_t i = first; i < first + count; ++i)
+            items.push_back({box_of(graph_.edges[i]), ENTRY_PART | (i + 1)});
+        return build_flat_boxes(items, flat_.boxes);
+    }
+
+    /// The tree of triangles of a primitive that the kernel does not meet as it is; else NONE.
+    std::uint32_t mesh_of(const Primitive& primitive) {
+        static_assert(static_cast<int>(PrimitiveKind::frustum) == KIND_FRUSTUM &&
+                      static_cast<int>(PrimitiveKind::torus) == KIND_TORUS &&
+                      static_cast<int>(PrimitiveKind::cone) == KIND_CONE);
+        if (form_of(primitive.kind()) != PrimitiveForm::shaped) return NONE;
+        const TessellatedPrimitive& mesh = tessellated(primitive, max_fineness(primitive));
+        std::vector<FlatItem> items;
+        for (const auto& corners : mesh.triangles) {
+            Box box;
+            for (const std::uint32_t corner : corners) {
+                box.include(mesh.vertices[corner]);
+                flat_.triangles.push_back(flat_four(mesh.vertices[corner]));
+            }
+            const Vec3 level = glm::cross(mesh.vertices[corners[1]] - mesh.vertices[corners[0]],
+                                          mesh.vertices[corners[2]] - mesh.vertices[corners[0]]);
+            for (const std::uint32_t corner : corners)
+                flat_.triangles.push_back(
+                    flat_four(mesh.normals.empty() ? glm::normalize(level) : mesh.normals[corner]));
+            items.push_back({box, ENTRY_TRIANGLE | static_cast<std::uint32_t>(
+                                                       flat_.triangles.size() / TRIANGLE_SIZE - 1)});
+        }
+        return build_flat_boxes(items, flat_.boxes);
+    }
+
+    const FlatGraph& graph_;
+    FlatModel& flat_;
+    std::vector<std::uint32_t> meshes_; ///< by primitive
+};
+
+/// Parts of the model that no array of the kernel holds.
+std::string lack(const FlatRequest& request) {
+    for (const auto& texture : request.textures.of_material)
+        if (texture) return "a picture on a surface";
+    if (request.textures.of_ground) return "a picture on the ground";
+    for (const CutNode& node : request.prepared.cut.nodes) {
+        if (node.unbounded) return "an endless plane";
+        if (node.sealed) return "a singular map";
+        if (node.shadowless || node.widens) return "a set without area, which is drawn wider than it is";
+    }
+    if (request.limits.list || request.view.lights.size() > MOST_LAMPS) return "a long list of lights";
+    return "";
+}
+
+} // namespace
+
+std::uint64_t FlatModel::bytes() const {
+    std::uint64_t count = 0;
+    for (const auto* array : {&boxes, &parts, &nodes, &looks, &materials, &triangles})
+        count += array->size() * sizeof(glm::vec4);
+    return count + texels.size() * sizeof(float) + sizeof(scene);
+}
+
+std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why) {
+    why = lack(request);
+    if (!why.empty()) return std::nullopt;
+    const TraceGround ground(request.prepared, request.detail.work_seconds);
+    const std::optional<FlatGraph> graph =
+        flat_graph(ground.layers, ground.bounds, request.detail.error_px, most_edges);
+    if (!graph) {
+        why = "a singular map";
+        return std::nullopt;
+    }
+    FlatModel flat;
+    Flattener(*graph, flat)
+        .run(request.view.camera.location, ground.bounds.node[graph->root], request.prepared.root_steps);
+    add_light(request, flat);
+    return flat;
+}
+
+} // namespace graftal

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "compiler/detail/prepare.h"
+#include "compiler/scene/scene.h"
+#include "compiler/unfolded/flat.h"
+#include "runtime/trace/model/trace_model.h"
+#include "runtime/trace/picture_tracer.h"
+
+namespace graftal {
+
+namespace kernel_layout {
+using glm::uvec4;
+using glm::vec4;
+#include "runtime/gpu/kernel/layout.glsl"
+} // namespace kernel_layout
+
+/// A model, its view and its light as the kernel reads them (kernel/layout.glsl): arrays without pointers, in
+/// single precision, each part in its own frame. World space has its origin at the camera.
+struct FlatModel {
+    std::vector<glm::vec4> boxes, parts, nodes, looks, materials, triangles;
+    std::vector<float> texels;
+    kernel_layout::Scene scene{};
+
+    std::uint64_t bytes() const;
+};
+
+/// A picture that the kernel is to draw.
+struct FlatRequest {
+    const PreparedCut& prepared;
+    const View& view;
+    const DetailOptions& detail;
+    const ModelTextures& textures;
+    const ShaderLimits& limits;
+    const Sampling& sampling;
+};
+
+/// Nothing where the kernel cannot draw the model; `why` then names the first thing that it lacks: "a picture
+/// on a surface". O(model).
+std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why);
+
+} // namespace graftal

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include <glm/vec4.hpp>
+
+#include "compiler/support/affine.h"
+
+namespace graftal {
+
+/// A word among the kernel's floats.
+inline float flat_bits(std::uint32_t word) {
+    return std::bit_cast<float>(word);
+}
+
+inline glm::vec4 flat_four(Vec3 v, double w = 0) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w)};
+}
+
+} // namespace graftal

@@ -1,0 +1,113 @@
+#include "runtime/gpu/gpu_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "runtime/image/develop.h"
+
+namespace graftal {
+
+namespace {
+
+#include "picture_spirv.h"
+
+/// What picture.comp calls a Job.
+struct Job {
+    std::array<std::uint32_t, 4> window, picture, sequence;
+};
+
+constexpr std::size_t film_binding = 8, sums_a_pixel = 2;
+/// Pixels along each side of a group's tile.
+constexpr int group_side = 8;
+constexpr double seconds_a_piece = 0.03;
+/// Software devices end loops after some ten thousand rounds in all, so that each sample has to be a piece of
+/// its own (Mesa's llvmpipe).
+constexpr std::uint32_t most_samples_by_software = 1;
+
+template<typename Value> std::span<const std::byte> bytes_of(const std::vector<Value>& values) {
+    return std::as_bytes(std::span(values));
+}
+
+} // namespace
+
+GpuPicture::GpuPicture(Gpu& gpu, ImageSize size, const Tile& window, const Samples& samples)
+    : gpu_(gpu), size_(size), window_(window), samples_(samples) {}
+
+Status GpuPicture::prepare(const FlatModel& model) {
+    Status status = gpu_.load(picture_spirv, film_binding + 1, sizeof(Job));
+    const std::span<const std::byte> scene = std::as_bytes(std::span(&model.scene, 1));
+    for (const std::span<const std::byte> bytes :
+         {bytes_of(model.boxes), bytes_of(model.parts), bytes_of(model.nodes), bytes_of(model.looks),
+          bytes_of(model.materials), bytes_of(model.triangles), bytes_of(model.texels), scene})
+        if (status.ok()) status = gpu_.add_buffer(bytes);
+    if (status.ok()) status = gpu_.add_buffer({}, window_.pixels() * sums_a_pixel * sizeof(glm::vec4));
+    return status;
+}
+
+Status GpuPicture::sample(std::uint32_t count, const std::function<bool(double)>& goes_on) {
+    const std::uint32_t most = gpu_.info().is_processor ? most_samples_by_software : count;
+    const double all = static_cast<double>(count - done_) * window_.height;
+    double finished = 0;
+    while (done_ < count) {
+        const std::uint32_t samples = std::min(count - done_, most);
+        for (int row = 0; row < window_.height;) {
+            if (!goes_on(finished / all)) return Status::failure("interrupted");
+            // Whole rows of groups, as many as take about as long as a piece may.
+            const double affordable = seconds_a_piece * pixels_a_second_ / samples / window_.width;
+            const int rows =
+                std::min(window_.height - row,
+                         group_side * std::max(1, static_cast<int>(std::min(affordable, 1e6)) / group_side));
+            const auto u = [](auto number) { return static_cast<std::uint32_t>(number); };
+            const Job job{{u(window_.x), u(window_.y + row), u(window_.width), u(rows)},
+                          {u(size_.width), u(size_.height), done_, samples},
+                          {u(samples_.sequence), u(samples_.sequence >> 32), u(row) * u(window_.width),
+                           samples_.lattice}};
+            const auto groups = [](int pixels) { return (pixels + group_side - 1) / group_side; };
+            double seconds = 0;
+            if (Status status = gpu_.run(std::as_bytes(std::span(&job, 1)),
+                                         u(groups(window_.width)) * u(groups(rows)), seconds);
+                !status.ok())
+                return status;
+            seconds_ += seconds;
+            pixels_a_second_ = static_cast<double>(rows) * window_.width * samples / std::max(seconds, 1e-6);
+            finished += static_cast<double>(rows) * samples;
+            row += rows;
+        }
+        done_ += samples;
+    }
+    return {};
+}
+
+Status GpuPicture::read(const Film& film, double noise_255, Image& picture, Seen& seen) {
+    std::vector<glm::vec4> sums(window_.pixels() * sums_a_pixel);
+    if (Status status = gpu_.read(film_binding, std::as_writable_bytes(std::span(sums))); !status.ok())
+        return status;
+    seen = {};
+    double noise = 0;
+    std::uint64_t measured = 0;
+    for (std::size_t i = 0; i < window_.pixels(); ++i) {
+        const glm::vec4& sum = sums[sums_a_pixel * i];
+        const glm::vec4& spread = sums[sums_a_pixel * i + 1];
+        for (int c = 0; c < 3; ++c)
+            picture.pixels[3 * i + static_cast<std::size_t>(c)] = sum.w > 0 ? sum[c] / sum.w : 0;
+        seen.samples += static_cast<double>(sum.w);
+        seen.steps += 1e3 * static_cast<double>(spread.z);
+        if (samples_.lattice > 0 || !(sum.w > 1)) continue;
+        const double mean = spread.x, count = sum.w;
+        const double error = std::sqrt(std::max<double>(spread.y, 0) / (count - 1) / count);
+        const double shown =
+            127.5 * (developed(mean + error, film) - developed(std::max(mean - error, 0.0), film));
+        noise += shown;
+        ++measured;
+        if (!(shown < noise_255)) ++seen.noisy;
+    }
+    if (measured > 0) seen.noise_255 = noise / static_cast<double>(measured);
+    return {};
+}
+
+} // namespace graftal

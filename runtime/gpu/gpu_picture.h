@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "runtime/gpu/device.h"
+#include "runtime/gpu/flat_model.h"
+#include "runtime/trace/tile.h"
+
+namespace graftal {
+
+/// A picture of one flat model on one device, which grows by samples. The sums are the same, to the last bit,
+/// however the work is cut into pieces; other devices may round otherwise.
+class GpuPicture {
+  public:
+    /// Samples of a pixel: of light that is estimated, or of a lattice.
+    struct Samples {
+        std::uint32_t lattice = 0; ///< squares along each side of a pixel; 1: its middle; 0: by chance
+        std::uint64_t sequence = 0;
+    };
+
+    /// `window`: the part of a picture of this size that is drawn. The device outlives it.
+    GpuPicture(Gpu& gpu, ImageSize size, const Tile& window, const Samples& samples);
+
+    /// Makes the kernel, and brings the model to the device.
+    Status prepare(const FlatModel& model);
+
+    /// Adds samples until each pixel has `count`, or is calm. `goes_on` is asked between pieces, which take
+    /// about 30 ms, with the share that is done; after it says false the status is a failure: "interrupted".
+    Status sample(std::uint32_t count, const std::function<bool(double share)>& goes_on);
+
+    /// Samples a lattice takes.
+    static std::uint32_t lattice_points(std::uint32_t lattice) {
+        return lattice <= 1 ? 1 : (lattice + 1) * (lattice + 1);
+    }
+
+    /// What has been counted so far, with the mean light of the pixels in `picture`, which has three channels
+    /// and the size of the window.
+    struct Seen {
+        double samples = 0;      ///< of all pixels together
+        double steps = 0;        ///< boxes and parts that rays went to
+        double noise_255 = 0;    ///< the mean error of a pixel as the film shows it; 0 where it is not known
+        std::uint64_t noisy = 0; ///< pixels with more noise than is asked for
+    };
+    Status read(const Film& film, double noise_255, Image& picture, Seen& seen);
+
+    double seconds() const { return seconds_; } ///< that the device has worked
+
+  private:
+    Gpu& gpu_;
+    ImageSize size_;
+    Tile window_;
+    Samples samples_;
+    std::uint32_t done_ = 0;
+    double seconds_ = 0;
+    double pixels_a_second_ = 0; ///< samples of pixels, by the last piece; 0: unknown
+};
+
+} // namespace graftal

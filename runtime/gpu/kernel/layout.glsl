@@ -1,0 +1,92 @@
+// Data that the host fills in and the kernel reads: offsets in units of 16 bytes, and marks. C++ includes this
+// text, too. World space has its origin at the camera here, so that what is near the eye keeps its digits.
+
+#define NONE 0xffffffffu
+
+// An entry of a box: its kind and its number.
+#define ENTRY_NUMBER 0x3fffffffu
+#define ENTRY_PART (1u << 30)
+#define ENTRY_TRIANGLE (2u << 30)
+
+// boxes[]: four children a node. Of each the lower corner and the entry, and the upper corner.
+#define BOX_SIZE 8u
+
+// parts[]: an instance as rays go through it. The rows of the linear part of child_from_parent, and with each
+// an axis of the child's origin in the parent; then the stretch, the child, the material and the levels.
+#define PART_SIZE 4u
+
+// looks[], by part: its tint, the colour fixed and the share that is open to what lies below it.
+
+// nodes[]: an object in its own frame.
+#define NODE_SIZE 8u
+#define NODE_BALL 0u    // centre, radius
+#define NODE_FACTS 1u   // cut_detail (0: never cut), flags, tree of its parts, tree of what is drawn where it is cut
+#define NODE_PROXY 2u   // three rows of proxy_from_node
+#define NODE_MEAN 5u    // the mean colour: what is fixed, and how much is open
+#define NODE_STANDIN 6u // likewise, of its proxy
+#define NODE_LOOK 7u    // the proxy's material, nothing, the radius at the end of what tapers
+
+// Flags of a node. The lowest bits are the kind of a primitive.
+#define NODE_KIND 0xffu
+#define NODE_UNENDING (1u << 8)
+#define NODE_TERMINAL (1u << 9) // where it is cut, what names no material shows its mean colour
+#define NODE_PRIMITIVE (1u << 10)
+
+// Kinds of primitives, in the order of GRAFTAL_PRIMITIVE_KINDS; those that the kernel meets as meshes are one.
+#define KIND_TRIANGLE 0u
+#define KIND_SPHERE 1u
+#define KIND_CUBE 2u
+#define KIND_PLANE 3u
+#define KIND_CYLINDER 4u
+#define KIND_CONE 5u
+#define KIND_TORUS 6u
+#define KIND_FRUSTUM 7u
+#define KIND_MESH 8u
+
+// triangles[]: corners, then normals at the corners.
+#define TRIANGLE_SIZE 6u
+
+// materials[]: see material() in light.glsl.
+#define MATERIAL_SIZE 6u
+
+struct Lamp {
+    vec4 at;  // of a sun: the unit vector towards it; w: 1 for a sun
+    vec4 rgb; // w: 1 if it throws no shadows
+    vec4 a, b; // half axes of an area; a.w: 1 if it is round, b.w: 1 if it is an area
+};
+
+#define MOST_LAMPS 64u
+
+struct Scene {
+    vec4 right, up, direction; // of the camera; w: half width, half height, 1 if its rays are parallel
+    vec4 lens;                 // radius, depth, the length of a pixel
+    vec4 projection;           // pixels per tangent over the error, nearest distance, error in the world, culls
+    vec4 edges;                // sine and cosine of half the angle of view, across and up
+    vec4 sky_zenith, sky_horizon, sky_axis; // w: from, slope, 1 if the sky's light is shown
+    vec4 light_up;             // of the sky's light; w: its kind
+    vec4 light_zenith, light_horizon, light_below; // w: brightness
+    vec4 clear_sun;                                // w: least height
+    vec4 clear_zenith;                             // w: over which the brightness is divided
+    vec4 perez[4];                                 // 15 numbers: five for each of Y, x, y
+    vec4 picture_from_world[3];                    // columns; w of the first: width, of the second: height
+    vec4 ground;                                   // height, 1 if there is one, transparent
+    vec4 catcher;                                  // centre, radius; radius 0: none
+    vec4 haze;     // distance (0: none), base, height (0: even all over)
+    vec4 haze_rgb; //
+    vec4 ambient;  // light; w: exposure
+    vec4 limits;   // farthest, least weight, 1 if light is listed, noise in 255ths
+    uvec4 counts;  // lamps, root's box, root's steps, bounces
+    uvec4 visits;  // most of a ray, more, ground's material, catcher's material
+    uvec4 sampling; // most samples, lattice's steps, soft film, opaque everywhere
+    uvec4 tables; // the pixel filter's in texels[]
+    Lamp lamps[MOST_LAMPS];
+};
+
+// Entries of the pixel filter's table, less one.
+#define FILTER_STEPS 256
+
+// Kinds of the sky's light.
+#define LIGHT_NONE 0
+#define LIGHT_GRADIENT 1
+#define LIGHT_CLEAR 2
+#define LIGHT_PICTURE 3

@@ -1,0 +1,82 @@
+// The words of the common subset, in GLSL.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#define real float
+#define FORMULA
+#define REAL(x) float(x)
+#define OUT(T) out T
+#define INOUT(T) inout T
+#define xyz_of(v) ((v).xyz)
+#define bits_of(v) floatBitsToUint(v)
+#define PI 3.14159265358979f
+#define FAR 1e30f
+#define min_uint(a, b) min(a, b)
+#define filter_table() scene.tables.x
+#define LIMIT_LEVELS 6
+#define LIMIT_RATIO 1.5f
+#define FRAMES Frame frames[MOST_FRAMES];
+#define STEPS uint steps = 0u;
+#define WAITING_PATHS Path waiting_paths[MOST_WAITING];
+
+#include "runtime/gpu/kernel/layout.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly restrict buffer Boxes { vec4 all_boxes[]; };
+layout(std430, binding = 1) readonly restrict buffer Parts { vec4 all_parts[]; };
+layout(std430, binding = 2) readonly restrict buffer Nodes { vec4 all_nodes[]; };
+layout(std430, binding = 3) readonly restrict buffer Looks { vec4 all_looks[]; };
+layout(std430, binding = 4) readonly restrict buffer Materials { vec4 all_materials[]; };
+layout(std430, binding = 5) readonly restrict buffer Triangles { vec4 all_triangles[]; };
+layout(std430, binding = 6) readonly restrict buffer Texels { float all_texels[]; };
+layout(std430, binding = 7) readonly restrict buffer SceneBuffer { Scene scene; };
+layout(std430, binding = 8) restrict buffer Film { vec4 film[]; };
+
+#define boxes(i) all_boxes[i]
+#define parts(i) all_parts[i]
+#define nodes(i) all_nodes[i]
+#define looks(i) all_looks[i]
+#define materials(i) all_materials[i]
+#define triangles(i) all_triangles[i]
+#define texels(i) all_texels[i]
+
+float hypotenuse(float x, float y) {
+    return length(vec2(x, y));
+}
+
+bool is_finite(vec3 v) {
+    return !any(isnan(v)) && !any(isinf(v));
+}
+
+vec3 never_zero(vec3 d) {
+    const float least = 1e-30f;
+    return vec3(abs(d.x) < least ? least : d.x, abs(d.y) < least ? least : d.y, abs(d.z) < least ? least : d.z);
+}
+
+struct Job {
+    uvec4 window; // x, y, width, height
+    uvec4 picture; // width, height, first sample, samples
+    uvec4 sequence; // low, high; the first pixel of the window in film[]; steps of a lattice
+};
+layout(push_constant) uniform Push { Job job; };
+
+#include "runtime/trace/shade/formulas.glsl"
+#include "compiler/light/formulas.glsl"
+#include "runtime/gpu/kernel/primitives.glsl"
+#include "runtime/gpu/kernel/walk.glsl"
+#include "runtime/gpu/kernel/random.glsl"
+#include "runtime/gpu/kernel/sky.glsl"
+#include "runtime/gpu/kernel/light.glsl"
+#include "runtime/gpu/kernel/picture.glsl"
+
+void main() {
+    const uint i = gl_GlobalInvocationID.x;
+    // Tiles of 8x8 pixels keep the threads of a group together.
+    const uint across = (job.window.z + 7u) / 8u, tile = i / 64u;
+    const uvec2 in_window = uvec2(8u * (tile % across) + i % 8u, 8u * (tile / across) + i / 8u % 8u);
+    if (in_window.x >= job.window.z || in_window.y >= job.window.w) return;
+    const uvec2 pixel = job.window.xy + in_window;
+    const uint at = job.sequence.z + in_window.y * job.window.z + in_window.x;
+    const vec2 size = vec2(job.picture.xy);
+    add_samples(pixel, at, size, job.sequence.xy, job.picture.z, job.picture.w, job.sequence.w);
+}

@@ -1,0 +1,86 @@
+// Pixels: camera rays, samples and their mean (PictureTracer of runtime/trace).
+
+#define SUMS_A_PIXEL 2u
+
+/// The ray through a point of the picture, in pixels.
+void camera_ray(vec2 at, vec2 size, INOUT(Stream) stream, OUT(vec3) o, OUT(vec3) d) {
+    const vec3 across = scene.right.w * (2.0f * at.x / size.x - 1.0f) * xyz_of(scene.right) +
+                        scene.up.w * (1.0f - 2.0f * at.y / size.y) * xyz_of(scene.up);
+    o = vec3(0.0f);
+    d = xyz_of(scene.direction);
+    if (scene.direction.w > 0.0f) {
+        o = across;
+        return;
+    }
+    d = normalize(d + across);
+    if (scene.lens.x > 0.0f) {
+        const vec2 place = next_place(stream);
+        const float radius = scene.lens.x * sqrt(place.x), turn = 2.0f * PI * place.y;
+        o = radius * (cos(turn) * xyz_of(scene.right) + sin(turn) * xyz_of(scene.up));
+        d = normalize(scene.lens.y / dot(d, xyz_of(scene.direction)) * d - o);
+    }
+}
+
+float srgb_encoded(float light) {
+    const float x = clamp(light, 0.0f, 1.0f);
+    return x <= 0.0031308f ? 12.92f * x : 1.055f * pow(x, 1.0f / 2.4f) - 0.055f;
+}
+
+/// A grey light as the film shows it (image/develop.h), in 255ths.
+float shown_255(float light) {
+    const float x = scene.ambient.w * light;
+    return 255.0f * srgb_encoded(scene.sampling.z != 0u && x > 0.5f ? 1.0f - 0.5f * exp(1.0f - 2.0f * x) : x);
+}
+
+/// The standard error of a pixel's mean (NoiseMeter::error_255()).
+float error_255(float count, float mean, float squares) {
+    const float error = sqrt(squares / (count - 1.0f) / count);
+    return 0.5f * (shown_255(mean + error) - shown_255(max(mean - error, 0.0f)));
+}
+
+/// Offset of a sample from its pixel's middle: a table of the filter follows the sky's picture in texels[].
+float filter_offset(float place) {
+    const float at = place * float(FILTER_STEPS);
+    const uint step = min_uint(uint(at), uint(FILTER_STEPS) - 1u);
+    const float share = at - float(step);
+    return mix(texels(filter_table() + step), texels(filter_table() + step + 1u), share);
+}
+
+/// Adds samples `first` to `first + count` to a pixel. `film`: the weighted sum of its light and the weights;
+/// then the mean and the sum of squares of the luminance, and the steps of rays in thousands. With `lattice` the samples are those of a lattice of
+/// as many squares along each side of the pixel, as POV-Ray takes it, or with 1 the pixel's middle alone.
+void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint count, uint lattice) {
+    vec4 sum = film[SUMS_A_PIXEL * at], noise = film[SUMS_A_PIXEL * at + 1u];
+    const uvec2 seed = uvec2(pixel.x, pixel.y ^ (sequence.x << 16));
+    const uint points = lattice == 1u ? 1u : lattice + 1u;
+    steps = 0u;
+    for (uint i = first; i < first + count; ++i) {
+        float weight = 1.0f;
+        vec2 in_pixel = vec2(0.5f);
+        Stream stream = stream_of(seed, i);
+        if (lattice > 0u) {
+            const uint x = i % points, y = i / points;
+            if (points > 1u) {
+                in_pixel = vec2(float(x), float(y)) / float(lattice);
+                weight = (x > 0u && x < lattice ? 1.0f : 0.5f) * (y > 0u && y < lattice ? 1.0f : 0.5f);
+            }
+        } else {
+            if (sum.w > 0.0f && uint(sum.w) % 16u == 0u && error_255(sum.w, noise.x, noise.y) < scene.limits.w)
+                break;
+            const vec2 place = next_place(stream);
+            in_pixel += vec2(filter_offset(place.x), filter_offset(place.y));
+        }
+        vec3 o;
+        vec3 d;
+        camera_ray(vec2(float(pixel.x), float(pixel.y)) + in_pixel, size, stream, o, d);
+        const vec3 light = radiance(o, d, stream);
+        sum += vec4(weight * light, weight);
+        const float luminance = dot(light, vec3(0.2126f, 0.7152f, 0.0722f));
+        const float before = luminance - noise.x;
+        noise.x += before / sum.w;
+        noise.y += before * (luminance - noise.x);
+    }
+    noise.z += 1e-3f * float(steps);
+    film[SUMS_A_PIXEL * at] = sum;
+    film[SUMS_A_PIXEL * at + 1u] = noise;
+}

@@ -1,0 +1,302 @@
+// Rays through the cyclic graph itself, depth first and the nearest first, into the frame of each part, as deep
+// as the parts are that the view shows (Traversal of runtime/trace does the same in doubles).
+
+/// Frames on the way from the root, and entries for later. A ray that needs more sees what it has by then.
+#define MOST_FRAMES 64
+#define MOST_LATER 320
+
+struct Hit {
+    float t;
+    vec3 normal; // in the world, of unit length
+    vec3 rgb;    // opaque, with all tints in front
+    uint material;
+    bool is_level; // it lies exactly at this height
+    float level;
+};
+
+/// A place on the way, and the ray there: origin + (t - base) / unit * direction.
+struct Frame {
+    vec3 origin;
+    float base;
+    vec3 direction;
+    float unit;
+    float scale; // norm of the map to the world
+    uint steps;  // levels that are left
+    uint part;   // the last on the way
+    uint node;
+    bool cut; // drawn by what stands for its parts
+};
+
+/// The detail of a length of 1 about a point of the world: Projection::detail_per_unit().
+float detail_per_unit(vec3 from_eye, float radius) {
+    if (scene.projection.w == 0.0f) return FAR;
+    const float aside = abs(dot(from_eye, xyz_of(scene.right))), above = abs(dot(from_eye, xyz_of(scene.up)));
+    const bool parallel = scene.direction.w > 0.0f;
+    const float along = dot(from_eye, xyz_of(scene.direction)), depth = parallel ? 1.0f : along;
+    const bool seen = aside * scene.edges.y - depth * scene.edges.x <= radius &&
+                      above * scene.edges.w - depth * scene.edges.z <= radius && (parallel || along >= -radius);
+    const float coarser = seen ? 1.0f : 8.0f;
+    if (scene.projection.z > 0.0f) return 1.0f / (scene.projection.z * coarser);
+    if (parallel) return scene.projection.x / coarser;
+    const float distance = max(along, 0.5f * length(from_eye));
+    return scene.projection.x / (max(distance - radius, scene.projection.y) * coarser);
+}
+
+vec3 rows_transposed(vec4 a, vec4 b, vec4 c, vec3 v) {
+    return v.x * xyz_of(a) + v.y * xyz_of(b) + v.z * xyz_of(c);
+}
+
+/// A normal of a part in the frame that holds it.
+vec3 normal_above(uint part, vec3 normal) {
+    const uint first = part * PART_SIZE;
+    const vec3 n = rows_transposed(parts(first), parts(first + 1u), parts(first + 2u), normal);
+    const float length2 = dot(n, n);
+    return length2 > 0.0f ? n * inversesqrt(length2) : normal;
+}
+
+FRAMES
+
+/// Boxes and parts that all rays of the thread went to.
+STEPS
+
+/// The look at the end of the way through frames 1 to `last`, and `part` beyond them if it is a primitive.
+void look_along(int last, uint part, bool is_proxy, INOUT(Hit) hit) {
+    vec4 tint = vec4(0.0f, 0.0f, 0.0f, 1.0f);
+    vec3 inherited = xyz_of(materials(0u));
+    hit.material = 0u;
+    uint above = NONE;
+    const int end = is_proxy ? last : last + 1;
+    for (int i = 1; i <= end; ++i) {
+        const uint step = i <= last ? frames[i].part : part;
+        const uvec4 facts = bits_of(parts(step * PART_SIZE + 3u));
+        if (frames[i - 1].cut && (bits_of(nodes(above * NODE_SIZE + NODE_FACTS)).y & NODE_TERMINAL) != 0u) {
+            const vec4 mean = nodes(above * NODE_SIZE + NODE_MEAN);
+            inherited = xyz_of(mean) + mean.w * inherited;
+        }
+        const vec4 own = looks(step);
+        tint = vec4(xyz_of(tint) + tint.w * xyz_of(own), tint.w * own.w);
+        if (facts.z != NONE) {
+            hit.material = facts.z;
+            inherited = xyz_of(materials(facts.z * MATERIAL_SIZE));
+        }
+        above = facts.y;
+    }
+    if (is_proxy) {
+        const uint node = frames[last].node;
+        const vec4 mean = nodes(node * NODE_SIZE + NODE_STANDIN);
+        inherited = xyz_of(mean) + mean.w * inherited;
+        const uint finish = bits_of(nodes(node * NODE_SIZE + NODE_LOOK)).x;
+        if (finish != NONE) hit.material = finish;
+    }
+    hit.rgb = xyz_of(tint) + tint.w * inherited;
+}
+
+/// The limit's normal where the proxy of a frame's node is met (limit_normal() of runtime/trace).
+vec3 limit_normal(int last, float t, vec3 normal) {
+    const int most_levels = LIMIT_LEVELS;
+    vec3 sum = normal;
+    int level = 0;
+    float weight = 1.0f;
+    for (int i = last; i > 0; --i) {
+        const float size = length(sum);
+        if (!(size > 0.0f)) return normal;
+        sum = size * normal_above(frames[i].part, sum / size);
+        if (i == 1 || level == most_levels) continue;
+        const Frame parent = frames[i - 1];
+        if ((bits_of(nodes(parent.node * NODE_SIZE + NODE_FACTS)).y & NODE_UNENDING) == 0u) continue;
+        ++level;
+        weight /= LIMIT_RATIO;
+        const vec4 ball = nodes(parent.node * NODE_SIZE + NODE_BALL);
+        const vec3 at = parent.origin + (t - parent.base) / parent.unit * parent.direction;
+        if (ball.w > 0.0f) sum += weight / ball.w * (at - xyz_of(ball));
+    }
+    return sum;
+}
+
+/// Shows what was met beyond the way to frame `last`: a primitive, by the part that leads to it, or the proxy of
+/// the frame's own node. `normal`: in its own frame.
+void take_hit(int last, uint part, bool is_proxy, vec3 normal, INOUT(Hit) hit) {
+    hit.is_level = false;
+    look_along(last, part, is_proxy, hit);
+    vec3 n = normal;
+    if (is_proxy) {
+        n = limit_normal(last, hit.t, normal);
+    } else {
+        n = normal_above(part, n);
+        for (int i = last; i > 0; --i)
+            n = normal_above(frames[i].part, n);
+    }
+    const float length2 = dot(n, n);
+    hit.normal = length2 > 0.0f ? n * inversesqrt(length2) : vec3(0.0f, 1.0f, 0.0f);
+}
+
+/// The first surface along the ray, or with `any` whether there is one: then nothing else of the hit counts.
+bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(Hit) hit) {
+    uint later_entry[MOST_LATER];
+    int later_frame[MOST_LATER];
+    float later_t[MOST_LATER];
+    int later = 0;
+    bool found = false;
+    bool hurries = false;
+    uint visits = 0u;
+    hit.t = most;
+    frames[0].origin = origin;
+    frames[0].base = 0.0f;
+    frames[0].direction = direction;
+    frames[0].unit = 1.0f;
+    frames[0].scale = 1.0f;
+    frames[0].steps = scene.counts.z;
+    frames[0].part = NONE;
+    frames[0].node = NONE;
+    frames[0].cut = false;
+    int at = 0; // the frame
+    uint entry = scene.counts.y;
+    float entry_t = 0.0f;
+    vec3 reciprocal = 1.0f / never_zero(direction);
+    for (;;) {
+        const Frame frame = frames[at];
+        uint next = NONE;
+        int next_frame = at;
+        float next_t = FAR;
+        bool met = false, is_proxy = false;
+        vec3 met_normal = vec3(0.0f);
+        int last = 0; // frame, and the part beyond it, of what was met
+        uint leaf = NONE;
+        if ((entry & ~ENTRY_NUMBER) == 0u) { // a node of boxes
+            const uint first = entry * BOX_SIZE;
+            const float near = (least - frame.base) / frame.unit, far = (hit.t - frame.base) / frame.unit;
+            for (uint i = 0u; i < 4u; ++i) {
+                const vec4 low = boxes(first + 2u * i), high = boxes(first + 2u * i + 1u);
+                const uint child = bits_of(low).w;
+                if (child == NONE) continue;
+                const vec3 a = (xyz_of(low) - frame.origin) * reciprocal,
+                           b = (xyz_of(high) - frame.origin) * reciprocal;
+                const vec3 enter = min(a, b), leave = max(a, b);
+                const float t0 = max(max(enter.x, enter.y), max(enter.z, near));
+                const float t1 = min(min(leave.x, leave.y), min(leave.z, far));
+                if (!(t0 <= t1 * (1.0f + 4e-7f) + 1e-7f)) continue;
+                const float t = frame.base + t0 * frame.unit;
+                uint put = child;
+                float put_t = t;
+                if (t < next_t) {
+                    put = next;
+                    put_t = next_t;
+                    next = child;
+                    next_t = t;
+                }
+                if (put != NONE && later < MOST_LATER) {
+                    later_entry[later] = put;
+                    later_frame[later] = at;
+                    later_t[later] = put_t;
+                    ++later;
+                }
+            }
+        } else if ((entry & ~ENTRY_NUMBER) == ENTRY_TRIANGLE) {
+            float t;
+            vec3 normal;
+            if (meet_facet(entry & ENTRY_NUMBER, frame.origin, frame.direction, (least - frame.base) / frame.unit,
+                           (hit.t - frame.base) / frame.unit, t, normal)) {
+                // The frame is the mesh's own: the part that leads to it is the way's last.
+                met = true;
+                met_normal = normal;
+                hit.t = frame.base + t * frame.unit;
+                last = at - 1;
+                leaf = frame.part;
+            }
+        } else {
+            const uint part = entry & ENTRY_NUMBER, first = part * PART_SIZE;
+            const vec4 row0 = parts(first), row1 = parts(first + 1u), row2 = parts(first + 2u),
+                       facts = parts(first + 3u);
+            const uint child = bits_of(facts).y, levels = bits_of(facts).w;
+            const float stretch = facts.x;
+            const float to_entry = max((entry_t - frame.base) / frame.unit, 0.0f);
+            const vec3 from =
+                frame.origin + to_entry * frame.direction - vec3(row0.w, row1.w, row2.w);
+            Frame inner;
+            inner.origin = vec3(dot(xyz_of(row0), from), dot(xyz_of(row1), from), dot(xyz_of(row2), from));
+            inner.direction = vec3(dot(xyz_of(row0), frame.direction), dot(xyz_of(row1), frame.direction),
+                                   dot(xyz_of(row2), frame.direction));
+            // As long as before in a similarity, longer in others.
+            inner.direction *= stretch;
+            inner.unit = frame.unit * stretch;
+            inner.base = frame.base + to_entry * frame.unit;
+            inner.scale = frame.scale * stretch;
+            inner.part = part;
+            inner.node = child;
+            inner.steps = frame.steps == NONE ? NONE : frame.steps - levels;
+            inner.cut = false;
+            const uint node = child * NODE_SIZE;
+            const vec4 node_facts = nodes(node + NODE_FACTS);
+            const uvec4 marks = bits_of(node_facts);
+            const float near = (least - inner.base) / inner.unit, far = (hit.t - inner.base) / inner.unit;
+            float t;
+            vec3 normal;
+            const uint kind = marks.y & NODE_KIND;
+            if ((marks.y & NODE_PRIMITIVE) != 0u && kind != KIND_MESH) {
+                met = meet_primitive(kind, nodes(node + NODE_LOOK).z, inner.origin, inner.direction, near, far, t,
+                                     normal);
+            } else if (at + 1 < MOST_FRAMES) {
+                const vec4 ball = nodes(node + NODE_BALL);
+                const float middle = dot(xyz_of(ball) - inner.origin, inner.direction) /
+                                     dot(inner.direction, inner.direction);
+                const float radius = inner.scale * ball.w;
+                const vec3 place = origin + (inner.base + middle * inner.unit) * direction;
+                const bool small = hurries || 2.0f * radius * detail_per_unit(place, radius) <= node_facts.x;
+                inner.cut = ((marks.y & NODE_UNENDING) != 0u && inner.steps == 0u) || (node_facts.x > 0.0f && small);
+                const uint tree = inner.cut ? marks.w : marks.z;
+                frames[at + 1] = inner;
+                if (inner.cut && tree == NONE) {
+                    const vec4 proxy0 = nodes(node + NODE_PROXY), proxy1 = nodes(node + NODE_PROXY + 1u),
+                               proxy2 = nodes(node + NODE_PROXY + 2u);
+                    const vec3 o = vec3(dot(xyz_of(proxy0), inner.origin) + proxy0.w,
+                                        dot(xyz_of(proxy1), inner.origin) + proxy1.w,
+                                        dot(xyz_of(proxy2), inner.origin) + proxy2.w);
+                    const vec3 d = vec3(dot(xyz_of(proxy0), inner.direction), dot(xyz_of(proxy1), inner.direction),
+                                        dot(xyz_of(proxy2), inner.direction));
+                    met = meet_sphere(o, d, near, far, t, normal);
+                    if (met) normal = rows_transposed(proxy0, proxy1, proxy2, normal);
+                    is_proxy = true;
+                } else if (tree != NONE) {
+                    next = tree;
+                    next_frame = at + 1;
+                    next_t = inner.base;
+                }
+            }
+            if (met) {
+                met_normal = normal;
+                hit.t = inner.base + t * inner.unit;
+                last = is_proxy ? at + 1 : at;
+                leaf = part;
+            }
+        }
+        ++visits;
+        if (met) {
+            found = true;
+            if (any) break;
+            take_hit(last, leaf, is_proxy, met_normal, hit);
+        }
+        if (visits > scene.visits.x) {
+            // What is left is drawn as coarsely as may be, then not at all.
+            if (hurries || found) break;
+            hurries = true;
+            visits -= scene.visits.y;
+        }
+        while (next == NONE && later > 0) {
+            --later;
+            if (later_t[later] < hit.t) {
+                next = later_entry[later];
+                next_frame = later_frame[later];
+                next_t = later_t[later];
+            }
+        }
+        if (next == NONE) break;
+        if (next_frame != at) {
+            at = next_frame;
+            reciprocal = 1.0f / never_zero(frames[at].direction);
+        }
+        entry = next;
+        entry_t = next_t;
+    }
+    steps += visits;
+    return found;
+}

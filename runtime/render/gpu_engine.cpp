@@ -1,0 +1,195 @@
+#include "runtime/render/gpu_engine.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "runtime/gpu/gpu_picture.h"
+#include "runtime/render/drawing.h"
+#include "runtime/render/file_film.h"
+#include "runtime/render/fit_picture.h"
+#include "runtime/render/native_engine.h"
+#include "runtime/render/stopwatch.h"
+
+namespace graftal {
+
+namespace {
+
+/// Steps of rays that stand for a second of the work allowed: a share of what an office's GPU takes.
+constexpr double steps_a_second = 2e9;
+/// Passes of a progressive picture: each has so many times the samples of the one before.
+constexpr std::uint32_t growth_of_passes = 4;
+
+/// One picture by a device, as far as that goes.
+class GpuDrawing {
+  public:
+    GpuDrawing(const PreparedView& prepared, const RenderOptions& options, const CancelFlag& cancel)
+        : prepared_(prepared), view_(prepared.viewed->view), options_(options), cancel_(cancel),
+          plan_(plan_picture(prepared, options)), window_(window_of(options, view_.size)),
+          file_(options, prepared.prepared->cut), film_(options.film ? *options.film : file_) {
+        picture_.width = window_.width;
+        picture_.height = window_.height;
+        picture_.channels = 3;
+        picture_.pixels.resize(3 * window_.pixels());
+    }
+
+    /// The model for the kernel; nothing, and `why`, where it lacks something.
+    std::optional<FlatModel> flat(std::string& why) const {
+        if (options_.fit)
+            why = "a fit that is known already";
+        else
+            return flat_model({*prepared_.prepared, view_, plan_.detail, prepared_.textures,
+                               limits_of(*prepared_.prepared, view_, options_), plan_.wanted},
+                              why);
+        return std::nullopt;
+    }
+
+    Status draw(const FlatModel& model, Gpu& gpu) {
+        const std::uint32_t lattice = lattice_of(plan_.wanted);
+        const std::uint32_t most = lattice > 0 ? GpuPicture::lattice_points(lattice)
+                                               : static_cast<std::uint32_t>(plan_.wanted.most_samples);
+        GpuPicture drawing(gpu, view_.size, window_, {lattice, options_.sequence});
+        if (Status status = drawing.prepare(model); !status.ok()) return status;
+        film_.begin({window_, picture_.channels, view_.film});
+        const double most_steps = options_.work(view_.quality) * steps_a_second;
+        std::uint32_t count = options_.progressive ? 1 : most;
+        for (std::uint32_t done = 0;; ++pass_) {
+            const Status status = drawing.sample(count, [&](double share) {
+                tell((done + share * (count - done)) / most);
+                return !cancel_.raised();
+            });
+            if (!status.ok() && (!cancel_.raised() || pass_ == 0)) return status;
+            GpuPicture::Seen seen;
+            if (Status read = drawing.read(view_.film, plan_.wanted.noise_255, picture_, seen); !read.ok())
+                return read;
+            note(seen, lattice > 0 ? 0 : count, drawing.seconds());
+            film_.tile(window_, picture_, pass_);
+            if (Status shown = film_.end(pass_, picture_, nullptr); !shown.ok()) return shown;
+            if (report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
+            if (!status.ok()) return status;
+            done = count;
+            const double left = most_steps - seen.steps;
+            const auto affordable = static_cast<std::uint32_t>(
+                std::clamp(done * left / std::max(seen.steps, 1.0), 0.0, static_cast<double>(most)));
+            if (done == most || affordable == 0) {
+                report_.finished = done == most;
+                return {};
+            }
+            count = std::min({most, growth_of_passes * done, done + affordable});
+        }
+    }
+
+    /// Whether some picture has appeared.
+    bool has_begun() const { return report_.pictures > 0; }
+    const NativeReport& report() const { return report_; }
+
+  private:
+    static std::uint32_t lattice_of(const Sampling& wanted) {
+        if (wanted.most_samples > 0) return 0;
+        return wanted.antialias ? std::uint32_t{1} << static_cast<unsigned>(*wanted.antialias - 1) : 1;
+    }
+
+    void note(const GpuPicture::Seen& seen, std::uint32_t samples, double seconds) {
+        report_.rays = {};
+        report_.rays.camera_rays = static_cast<std::uint64_t>(seen.samples);
+        report_.rays.work = static_cast<std::uint64_t>(seen.steps);
+        report_.rays.noisy_pixels = seen.noisy;
+        if (seen.noise_255 > 0) {
+            report_.rays.measured_pixels = window_.pixels();
+            report_.rays.noise_1024 =
+                static_cast<std::uint64_t>(seen.noise_255 * 1024 * static_cast<double>(window_.pixels()));
+        }
+        report_.samples_a_pixel = samples > 0 ? samples : plan_.wanted.samples_a_pixel();
+        report_.fewer_where_calm = plan_.wanted.noise_255 > 0 && samples > 0;
+        report_.error_px = plan_.detail.culls() ? plan_.detail.error_px : 0;
+        report_.seconds = seconds;
+    }
+
+    void tell(double share) const {
+        if (options_.on_progress)
+            options_.on_progress({report_.pictures ? "refining" : "tracing", share, report_.samples_a_pixel});
+    }
+
+    const PreparedView& prepared_;
+    const View& view_;
+    const RenderOptions& options_;
+    const CancelFlag& cancel_;
+    const PicturePlan plan_;
+    const Tile window_;
+    FileFilm file_;
+    PictureFilm& film_;
+    Image picture_;
+    NativeReport report_;
+    int pass_ = 0;
+    Stopwatch watch_;
+};
+
+void note_native(const PreparedView& prepared, std::string_view why, Compilation& compilation) {
+    const Graph& graph = prepared.viewed->model->graph;
+    compilation.diagnostics.note(graph.objects[graph.root].span,
+                                 fmt::format("the processors draw this picture, not the GPU: {}", why));
+}
+
+std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& options,
+                               Compilation& compilation) {
+    const Stopwatch preparing;
+    PreparedView prepared;
+    if (!prepare_view(session, options, prepared, compilation)) return std::nullopt;
+    if (!options.film) compilation.status = check_writable(options.output);
+    if (!compilation.status.ok()) return std::nullopt;
+    const CancelFlag cancel = session.control().cancel;
+    GpuDrawing drawing(prepared, options, cancel);
+    std::string why;
+    if (const std::optional<FlatModel> model = drawing.flat(why)) {
+        Status status;
+        const std::unique_ptr<Gpu> gpu = Gpu::open(options.device, status);
+        compilation.times.push_back({"prepare", preparing.seconds()});
+        if (gpu) status = drawing.draw(*model, *gpu);
+        if (status.ok() || cancel.raised()) {
+            compilation.status = status;
+            if (!drawing.has_begun()) return std::nullopt;
+            compilation.times.push_back({"trace", drawing.report().seconds});
+            return report_of(drawing.report(), gpu->info().name);
+        }
+        why = status.message();
+    } else {
+        why = "its kernel does not know " + why;
+    }
+    std::optional<DrawReport> report = native_engine.draw(session, options, compilation);
+    note_native(prepared, why, compilation);
+    return report;
+}
+
+} // namespace
+
+bool has_gpu() {
+    static const bool found = [] {
+        const std::vector<GpuInfo> devices = gpu_devices();
+        return !devices.empty() && !devices.front().is_processor;
+    }();
+    return found;
+}
+
+constinit const Engine gpu_engine = {
+    .name = "gpu",
+    .summary = "graftal's own on the graphics card",
+    .progressive = true,
+    .available = []() -> Status {
+        std::string why;
+        if (!gpu_devices(&why).empty()) return {};
+        return Status::failure(
+            fmt::format("GPU: {}: give '--engine native', or install a driver of Vulkan", why));
+    },
+    .refusal = [](const RenderOptions& options) -> std::string {
+        if (options.aovs) return "--aovs: the GPU draws light alone: give '--engine native'";
+        return native_engine.refusal(options);
+    },
+    .compile = [](Session& session, const StageOptions& options, Compilation& compilation) -> bool {
+        return session.viewed(options, compilation) != nullptr;
+    },
+    .draw = draw,
+};
+
+} // namespace graftal

@@ -1,0 +1,135 @@
+// Pictures by a device of Vulkan, against the native engine's of the same samples. Tests run on Mesa's
+// llvmpipe, where no card is.
+
+#include "runtime/gpu/device.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runtime/gpu/gpu_picture.h"
+#include "runtime/trace/picture_tracer.h"
+#include "tests/unit/trace/models.h"
+
+namespace graftal {
+namespace {
+
+using testing::HasSubstr;
+
+std::unique_ptr<Gpu> first_device() {
+    Status status;
+    std::unique_ptr<Gpu> gpu = Gpu::open(0, status);
+    EXPECT_TRUE(gpu) << status.message();
+    return gpu;
+}
+
+View lit_view(const TraceModel& model) {
+    View view = model.view;
+    view.size = {40, 30};
+    view.lights = {{.location = glm::normalize(Vec3(1, 2, 2)), .sun = true, .rgb = Rgb(2), .angle_deg = 3}};
+    view.sky_light = SkyLight{.zenith = Rgb(0.3, 0.4, 0.8), .horizon = Rgb(0.8), .below = Rgb(0.2)};
+    view.sky_light->bounces = 2;
+    view.shows_sky_light = true;
+    return view;
+}
+
+Image blank(const Tile& window) {
+    Image image;
+    image.width = window.width;
+    image.height = window.height;
+    image.channels = 3;
+    image.pixels.resize(3 * window.pixels());
+    return image;
+}
+
+struct Pictures {
+    Image gpu, native;
+    GpuPicture::Seen seen;
+};
+
+Pictures draw(const Graph& graph, const Tile& window, std::uint32_t samples) {
+    const auto plain = test::traced(graph, {});
+    const TraceModel model(plain->shared, lit_view(*plain), plain->options);
+    Sampling sampling;
+    sampling.most_samples = static_cast<int>(samples);
+    std::string why;
+    const std::optional<FlatModel> flat =
+        flat_model({model.prepared, model.view, model.options, model.textures, {}, sampling}, why);
+    EXPECT_TRUE(flat) << why;
+    Pictures pictures{blank(window), blank(window), {}};
+    const std::unique_ptr<Gpu> gpu = first_device();
+    if (!gpu || !flat) return pictures;
+    GpuPicture picture(*gpu, model.view.size, window, {});
+    EXPECT_TRUE(picture.prepare(*flat).ok());
+    EXPECT_TRUE(picture.sample(samples, [](double) { return true; }).ok());
+    EXPECT_TRUE(picture.read({}, 0, pictures.gpu, pictures.seen).ok());
+    PictureTracer(model).trace(sampling, {}, window, pictures.native);
+    return pictures;
+}
+
+TEST(Gpu, DrawsTheNativeEnginesPicture) {
+    const Pictures pictures = draw(test::tetrahedron(0.6), {0, 0, 40, 30}, 4);
+    double sum = 0;
+    for (std::size_t i = 0; i < pictures.gpu.pixels.size(); ++i)
+        sum += std::abs(pictures.gpu.pixels[i] - pictures.native.pixels[i]);
+    EXPECT_LT(255 * sum / static_cast<double>(pictures.gpu.pixels.size()), 1.2);
+    EXPECT_GT(*std::ranges::max_element(pictures.gpu.pixels), 0.1f);
+    EXPECT_EQ(pictures.seen.samples, 40 * 30 * 4);
+    EXPECT_GT(pictures.seen.steps, 40 * 30 * 4);
+}
+
+TEST(Gpu, WindowsHaveThePixelsOfTheWhole) {
+    const Pictures whole = draw(test::tetrahedron(0.6), {0, 0, 40, 30}, 2);
+    const Tile window{9, 5, 21, 13};
+    const Pictures part = draw(test::tetrahedron(0.6), window, 2);
+    for (int y = 0; y < window.height; ++y)
+        for (int x = 0; x < 3 * window.width; ++x)
+            ASSERT_EQ(part.gpu.pixels[static_cast<std::size_t>(3 * window.width * y + x)],
+                      whole.gpu.pixels[static_cast<std::size_t>(3 * 40 * (y + window.y) + x + 3 * window.x)]);
+}
+
+TEST(Gpu, CanBeInterrupted) {
+    const auto plain = test::traced(test::tetrahedron(0.6), {});
+    std::string why;
+    const auto flat =
+        flat_model({plain->prepared, plain->view, plain->options, plain->textures, {}, {}}, why);
+    const std::unique_ptr<Gpu> gpu = first_device();
+    ASSERT_TRUE(gpu && flat);
+    GpuPicture picture(*gpu, {64, 48}, {0, 0, 64, 48}, {.lattice = 1});
+    ASSERT_TRUE(picture.prepare(*flat).ok());
+    int asked = 0;
+    const Status status = picture.sample(1, [&](double) { return ++asked < 2; });
+    EXPECT_EQ(status.message(), "interrupted");
+    EXPECT_EQ(asked, 2);
+}
+
+TEST(Gpu, WantOfMemoryIsAStatus) {
+    const std::unique_ptr<Gpu> gpu = first_device();
+    ASSERT_TRUE(gpu);
+    EXPECT_FALSE(gpu->add_buffer({}, std::size_t{1} << 50).ok());
+}
+
+TEST(Gpu, NoSuchDeviceIsAStatus) {
+    Status status;
+    EXPECT_FALSE(Gpu::open(1000, status));
+    EXPECT_THAT(status.message(), HasSubstr("no device number 1000"));
+}
+
+TEST(Gpu, WithoutADriverThereIsNoDevice) {
+    // The loader reads these variables whenever it makes an instance.
+    for (const char* const name : {"VK_ICD_FILENAMES", "VK_DRIVER_FILES"})
+        setenv(name, "/nonexistent.json", 1);
+    std::string why;
+    EXPECT_TRUE(gpu_devices(&why).empty());
+    EXPECT_FALSE(why.empty());
+    Status status;
+    EXPECT_FALSE(Gpu::open(0, status));
+    EXPECT_THAT(status.message(), HasSubstr("GPU: "));
+    for (const char* const name : {"VK_ICD_FILENAMES", "VK_DRIVER_FILES"})
+        unsetenv(name);
+}
+
+} // namespace
+} // namespace graftal

@@ -1,0 +1,156 @@
+// The kernel, as C++, against the native engine: rays through the same models meet the same surfaces.
+
+#include <cmath>
+#include <optional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "runtime/trace/camera_rays.h"
+#include "runtime/trace/traverse/traversal.h"
+#include "tests/unit/gpu/kernel.h"
+#include "tests/unit/trace/models.h"
+
+namespace graftal {
+namespace {
+
+std::optional<FlatModel> flattened(const TraceModel& model) {
+    std::string why;
+    std::optional<FlatModel> flat =
+        flat_model({model.prepared, model.view, model.options, model.textures, {}, {}}, why);
+    EXPECT_TRUE(flat) << why;
+    return flat;
+}
+
+/// Copies of itself at corners, turned and scaled unevenly, over two shapes.
+Graph turned_parts() {
+    Graph graph = test::empty_graph();
+    const ObjectId self = graph.add({"self", {}, {}, {}, {}});
+    const ObjectId cube = graph.primitive(PrimitiveKind::cube);
+    const ObjectId cone = graph.primitive(PrimitiveKind::cone);
+    for (const double side : {-1.0, 1.0}) {
+        const Affine turn = Affine::rotate(glm::normalize(Vec3(side, 2, 1)), 0.4 * side);
+        test::place(graph, self, self,
+                    Affine::translate({0.6 * side, 0.7, 0.1 * side}) * turn *
+                        Affine::scale(Vec3(0.55, 0.6, 0.5)),
+                    {{0.9, 0.2, 0.1}, 0.3});
+    }
+    test::place(graph, self, cone, Affine::scale(Vec3(0.2, 0.9, 0.2)), {{0.1, 0.8, 0.2}, 0.8});
+    graph.objects[self].terminal = Instance{cube, Affine::scale(Vec3(0.3)), {}, {}, {}};
+    test::place(graph, graph.root, self, {});
+    return graph;
+}
+
+/// Every primitive that the kernel meets by itself, side by side.
+Graph all_shapes() {
+    Graph graph = test::empty_graph();
+    double x = 0;
+    for (const PrimitiveKind kind : {PrimitiveKind::triangle, PrimitiveKind::sphere, PrimitiveKind::cube,
+                                     PrimitiveKind::cylinder, PrimitiveKind::cone, PrimitiveKind::torus})
+        test::place(graph, graph.root, graph.primitive(kind),
+                    Affine::translate({x += 2.5, 0, 0}) *
+                        Affine::rotate(glm::normalize(Vec3(1, 1, 0.3)), 0.7));
+    test::place(graph, graph.root, graph.primitive(Primitive(PrimitiveKind::frustum, 40)),
+                Affine::translate({x + 2.5, 0, 0}) * Affine::rotate(Vec3(1, 0, 0), 0.5));
+    return graph;
+}
+
+struct Comparison {
+    int rays = 0, hits = 0, differ = 0;
+    double farthest = 0; ///< of the distances, relative
+    double colour = 0;   ///< largest difference where both meet the same place
+};
+
+Comparison compare(const TraceModel& model, int rays, std::uint32_t seed) {
+    const std::optional<FlatModel> flat = flattened(model);
+    Comparison result;
+    if (!flat) return result;
+    kernel::use(*flat);
+    Traversal traversal(model);
+    const CameraRays camera(model.view);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> place(0, 1);
+    for (int i = 0; i < rays; ++i) {
+        const Ray ray =
+            camera.through(place(random) * model.view.size.width, place(random) * model.view.size.height);
+        SurfaceHit native;
+        const bool met = traversal.closest(ray, {}, native);
+        kernel::Hit hit{};
+        const bool found = kernel::walk(glm::vec3(ray.origin - model.view.camera.location),
+                                        glm::vec3(ray.direction), 0, kernel::FAR, false, hit);
+        ++result.rays;
+        result.hits += met;
+        if (met != found || (met && std::abs(hit.t - native.t) > 2e-4 * native.t)) {
+            ++result.differ;
+            continue;
+        }
+        if (!met) continue;
+        result.farthest = std::max(result.farthest, std::abs(hit.t - native.t) / native.t);
+        result.colour = std::max(result.colour, glm::length(Rgb(hit.rgb) - native.rgb));
+        EXPECT_GT(glm::dot(Vec3(hit.normal), native.normal), 0.98) << i;
+        EXPECT_TRUE(kernel::walk(glm::vec3(ray.origin - model.view.camera.location), glm::vec3(ray.direction),
+                                 0, kernel::FAR, true, hit));
+    }
+    return result;
+}
+
+TEST(GpuKernel, MeetsWhatTheNativeEngineMeets) {
+    const Graph tetrahedron = test::tetrahedron(0.6), turned = turned_parts();
+    for (const Graph* const graph : {&tetrahedron, &turned}) {
+        DetailOptions options;
+        const auto model = test::traced(*graph, options);
+        const Comparison seen = compare(*model, 4000, 1);
+        EXPECT_GT(seen.hits, 100);
+        EXPECT_LE(seen.differ, seen.rays / 500);
+        EXPECT_LT(seen.farthest, 1e-4);
+        EXPECT_LT(seen.colour, 1e-3);
+    }
+}
+
+TEST(GpuKernel, CountsLevels) {
+    for (const unsigned steps : {0u, 1u, 4u}) {
+        DetailOptions options;
+        options.steps = steps;
+        options.error_px = 0;
+        const auto model = test::traced(turned_parts(), options);
+        const Comparison seen = compare(*model, 2000, 2);
+        EXPECT_GT(seen.hits, 40) << steps;
+        EXPECT_LE(seen.differ, 4) << steps;
+    }
+}
+
+TEST(GpuKernel, MeetsAllShapes) {
+    DetailOptions options;
+    const auto model = test::traced(all_shapes(), options);
+    const Comparison seen = compare(*model, 6000, 3);
+    EXPECT_GT(seen.hits, 150);
+    EXPECT_LE(seen.differ, 6);
+}
+
+TEST(GpuKernel, SaysWhatItCannotDraw) {
+    Graph graph = test::empty_graph();
+    test::place(graph, graph.root, graph.primitive(PrimitiveKind::plane), {});
+    test::place(graph, graph.root, graph.primitive(PrimitiveKind::cube), {});
+    const auto model = test::traced(graph, {});
+    std::string why;
+    EXPECT_FALSE(flat_model({model->prepared, model->view, model->options, model->textures, {}, {}}, why));
+    EXPECT_EQ(why, "an endless plane");
+}
+
+TEST(GpuKernel, HasTheRandomNumbersOfTheNativeEngine) {
+    for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{0x123456789abcdef}})
+        for (const std::uint32_t index : {0u, 1u, 77u}) {
+            SampleStream native(seed, index);
+            kernel::Stream stream = kernel::stream_of(
+                glm::uvec2(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)), index);
+            for (int i = 0; i < 5; ++i) {
+                const glm::dvec2 a = native.next();
+                const glm::vec2 b = kernel::next_place(stream);
+                EXPECT_NEAR(a.x, b.x, 1e-7);
+                EXPECT_NEAR(a.y, b.y, 1e-7);
+            }
+        }
+}
+
+} // namespace
+} // namespace graftal

@@ -75,7 +75,8 @@ endfunction()
 function(graftal_kernel folder kernel)
   graftal_targets(layer ${folder})
   get_filename_component(name ${kernel} NAME_WE)
-  set(header ${PROJECT_BINARY_DIR}/kernels/${name}_spirv.h)
+  set(header ${PROJECT_BINARY_DIR}/kernels/${folder}/${name}_spirv.h)
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/kernels/${folder})
   file(GLOB_RECURSE texts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/*/*.glsl)
   add_custom_command(OUTPUT ${header} VERBATIM
     COMMAND ${GRAFTAL_GLSLANG} --quiet --target-env vulkan1.2 -S comp -I${PROJECT_SOURCE_DIR} --vn ${name}_spirv

@@ -7,6 +7,7 @@
 
 #include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/graph/piece_kind.h"
+#include "compiler/primitives/texture_space.h"
 
 namespace graftal {
 
@@ -98,6 +99,7 @@ class Flattening {
         flat.material = edge.material.value_or(flat_none);
         flat.stretch =
             static_cast<float>(edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
+        flat.turns = static_cast<float>(length_in_turns(edge.node_from_child.linear));
         flat.tint = Paint(edge.tint);
         for (int k = 0; k < 3; ++k) {
             for (int row = 0; row < 3; ++row)

@@ -32,6 +32,7 @@ struct FlatEdge {
     std::uint32_t levels = 0; ///< those that a walk has left get fewer by it
     std::uint32_t material = flat_none;
     float stretch = 1; ///< norm of the map's linear part, between the frames
+    float turns = 1;   ///< of a primitive: length_in_turns() of its map
     Paint tint;
     std::array<FloatPair, 9> child_from_parent; ///< linear part by columns, of points from the child's origin
     std::array<FloatPair, 3> origin;            ///< of the child, in the parent's frame

@@ -285,7 +285,7 @@ struct Gpu::Parts {
         return result == VK_SUCCESS ? Status() : failure("running the kernel", result);
     }
 
-    /// What one command writes, the next reads.
+    /// Lets the next command read what those before it write.
     void wait_for_writes() {
         VkMemoryBarrier barrier{};
         barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;

@@ -23,7 +23,18 @@ using kernel_layout::Scene;
 /// Boxes and parts that one ray may go to, and those that it may go to when all that can be is culled.
 constexpr std::uint32_t most_steps = 1 << 16, more_steps = 1 << 12;
 
-void add_material(const Material& material, FlatModel& flat) {
+/// The first of a picture's texels among the kernel's; each is a word of three levels and whether it is
+/// clear.
+std::uint32_t add_texture(const Texture& texture, FlatModel& flat) {
+    const auto first = static_cast<std::uint32_t>(flat.texels.size());
+    for (const Texture::Texel& texel : texture.texels)
+        flat.texels.push_back(flat_bits(texel.srgb[0] | texel.srgb[1] << 8 | texel.srgb[2] << 16 |
+                                        (texel.clear ? 1u : 0u) << 24));
+    if (texture.coverage < 1) flat.scene.tables.y = 1;
+    return first;
+}
+
+void add_material(const Material& material, const Texture* texture, FlatModel& flat) {
     const Interior interior = interior_of(material);
     const auto add = [&](double x, double y, double z, double w) {
         flat.materials.push_back(flat_four({x, y, z}, w));
@@ -33,7 +44,12 @@ void add_material(const Material& material, FlatModel& flat) {
     add(material.translucency, material.emission, material.metallic, material.transparency);
     add(material.filter, material.ior, material.blur, 0);
     flat.materials.push_back(flat_four(interior.absorbed, interior.ior));
-    add(0, 0, 0, 0);
+    if (texture)
+        flat.materials.emplace_back(flat_bits(add_texture(*texture, flat)),
+                                    static_cast<float>(texture->width), static_cast<float>(texture->height),
+                                    static_cast<float>(material.around));
+    else
+        flat.materials.emplace_back(flat_bits(NONE), 0, 0, 0);
 }
 
 std::uint32_t last_material(const FlatModel& flat) {
@@ -155,16 +171,19 @@ void add_camera(const FlatRequest& request, Scene& scene) {
 void add_light(const FlatRequest& request, FlatModel& flat) {
     const View& view = request.view;
     Scene& scene = flat.scene;
-    add_material(Material(), flat);
-    for (const Material& material : request.prepared.cut.materials)
-        add_material(material, flat);
+    add_sky(view, flat); // its picture comes first among the texels
+    add_material(Material(), nullptr, flat);
+    const std::vector<Material>& materials = request.prepared.cut.materials;
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        add_material(
+            materials[i],
+            i < request.textures.of_material.size() ? request.textures.of_material[i].get() : nullptr, flat);
     add_lamps(view, scene);
-    add_sky(view, flat);
     add_camera(request, scene);
     bool opaque = std::ranges::none_of(request.prepared.cut.materials, &Material::is_transparent);
     if (view.ground) {
         const bool clear = view.ground->material.is_transparent();
-        add_material(view.ground->material, flat);
+        add_material(view.ground->material, nullptr, flat);
         scene.visits.z = last_material(flat);
         scene.ground = flat_four({view.ground->height - view.camera.location.y, 1, clear ? 1.0 : 0.0});
         opaque = opaque && !clear;
@@ -175,7 +194,7 @@ void add_light(const FlatRequest& request, FlatModel& flat) {
         paper.ambient = 0;
         paper.diffuse = 1;
         paper.specular = 0;
-        add_material(paper, flat);
+        add_material(paper, nullptr, flat);
         scene.visits.w = last_material(flat);
         scene.catcher = flat_four(view.catcher->centre - view.camera.location, view.catcher->radius);
     }

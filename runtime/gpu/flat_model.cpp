@@ -1,12 +1,14 @@
 #include "runtime/gpu/flat_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <glm/geometric.hpp>
 
 #include "compiler/primitives/tapered.h"
 #include "compiler/primitives/tessellate.h"
+#include "compiler/primitives/texture_space.h"
 #include "compiler/support/stage_price.h"
 #include "runtime/gpu/flat_boxes.h"
 #include "runtime/gpu/flat_light.h"
@@ -16,7 +18,7 @@ namespace graftal {
 
 namespace {
 
-/// Of 32 bits less the kind of an entry.
+/// Entries are words of 32 bits that hold their kind, too.
 constexpr std::size_t most_edges = ENTRY_NUMBER;
 
 glm::vec4 of_paint(const Paint& paint) {
@@ -34,7 +36,9 @@ Box box_of(const FlatEdge& edge) {
 
 class Flattener {
   public:
-    Flattener(const FlatGraph& graph, FlatModel& flat) : graph_(graph), flat_(flat) {}
+    /// `pictured`: some material has a picture.
+    Flattener(const FlatGraph& graph, bool pictured, FlatModel& flat)
+        : graph_(graph), pictured_(pictured), flat_(flat) {}
 
     void run(Vec3 eye, const Box& drawn, std::uint32_t root_steps) {
         for (const Primitive& primitive : graph_.primitives)
@@ -73,6 +77,7 @@ class Flattener {
         flat_.parts.emplace_back(edge.stretch, flat_bits(edge.child),
                                  flat_bits(material_number(edge.material)), flat_bits(edge.levels));
         flat_.looks.push_back(of_paint(edge.tint));
+        flat_.looks.emplace_back(edge.turns, 0, 0, 0);
     }
 
     void add_node(const FlatNode& node) {
@@ -124,16 +129,19 @@ class Flattener {
         const TessellatedPrimitive& mesh = tessellated(primitive, max_fineness(primitive));
         std::vector<FlatItem> items;
         for (const auto& corners : mesh.triangles) {
+            const std::array<Vec3, 3> at = {mesh.vertices[corners[0]], mesh.vertices[corners[1]],
+                                            mesh.vertices[corners[2]]};
+            const Vec3 level = glm::normalize(glm::cross(at[1] - at[0], at[2] - at[0]));
+            const std::array<TexturePoint, 3> uv =
+                pictured_ ? texture_coordinates(primitive, {}, at) : std::array<TexturePoint, 3>{};
             Box box;
-            for (const std::uint32_t corner : corners) {
-                box.include(mesh.vertices[corner]);
-                flat_.triangles.push_back(flat_four(mesh.vertices[corner]));
+            for (std::size_t k = 0; k < 3; ++k) {
+                box.include(at[k]);
+                flat_.triangles.push_back(flat_four(at[k], uv[k][0]));
             }
-            const Vec3 level = glm::cross(mesh.vertices[corners[1]] - mesh.vertices[corners[0]],
-                                          mesh.vertices[corners[2]] - mesh.vertices[corners[0]]);
-            for (const std::uint32_t corner : corners)
+            for (std::size_t k = 0; k < 3; ++k)
                 flat_.triangles.push_back(
-                    flat_four(mesh.normals.empty() ? glm::normalize(level) : mesh.normals[corner]));
+                    flat_four(mesh.normals.empty() ? level : mesh.normals[corners[k]], uv[k][1]));
             items.push_back({box, ENTRY_TRIANGLE | static_cast<std::uint32_t>(
                                                        flat_.triangles.size() / TRIANGLE_SIZE - 1)});
         }
@@ -141,14 +149,13 @@ class Flattener {
     }
 
     const FlatGraph& graph_;
+    const bool pictured_;
     FlatModel& flat_;
     std::vector<std::uint32_t> meshes_; ///< by primitive
 };
 
 /// Parts of the model that no array of the kernel holds.
 std::string lack(const FlatRequest& request) {
-    for (const auto& texture : request.textures.of_material)
-        if (texture) return "a picture on a surface";
     if (request.textures.of_ground) return "a picture on the ground";
     for (const CutNode& node : request.prepared.cut.nodes) {
         if (node.unbounded) return "an endless plane";
@@ -179,7 +186,9 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
         return std::nullopt;
     }
     FlatModel flat;
-    Flattener(*graph, flat)
+    const bool pictured = std::ranges::any_of(request.textures.of_material,
+                                              [](const auto& texture) { return texture != nullptr; });
+    Flattener(*graph, pictured, flat)
         .run(request.view.camera.location, ground.bounds.node[graph->root], request.prepared.root_steps);
     add_light(request, flat);
     return flat;

@@ -14,9 +14,9 @@ namespace graftal {
 
 namespace {
 
-#include "picture_spirv.h"
+#include "runtime/gpu/picture_spirv.h"
 
-/// What picture.comp calls a Job.
+/// The Job of picture.comp.
 struct Job {
     std::array<std::uint32_t, 4> window, picture, sequence;
 };

@@ -34,14 +34,15 @@ class GpuPicture {
         return lattice <= 1 ? 1 : (lattice + 1) * (lattice + 1);
     }
 
-    /// What has been counted so far, with the mean light of the pixels in `picture`, which has three channels
-    /// and the size of the window.
+    /// Counts of all samples so far.
     struct Seen {
         double samples = 0;      ///< of all pixels together
         double steps = 0;        ///< boxes and parts that rays went to
         double noise_255 = 0;    ///< the mean error of a pixel as the film shows it; 0 where it is not known
         std::uint64_t noisy = 0; ///< pixels with more noise than is asked for
     };
+    /// Gives the counts, and the mean light of the pixels to `picture`, which has three channels and the size
+    /// of the window.
     Status read(const Film& film, double noise_255, Image& picture, Seen& seen);
 
     double seconds() const { return seconds_; } ///< that the device has worked

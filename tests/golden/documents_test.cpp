@@ -103,7 +103,7 @@ TEST_F(DocumentsTest, VersionIsTextOrJson) {
                     "print(d[\"name\"], d[\"version\"], *d[\"engines\"], *d[\"languages\"])'")
                   .out,
               graftal("version").out.substr(0, graftal("version").out.size() - 1) +
-                  " native povray lsys rifs inst\n");
+                  " native gpu povray lsys rifs inst\n");
 }
 
 TEST_F(DocumentsTest, EveryPageOfTheManualIsSetWithoutAWarning) {
@@ -120,7 +120,7 @@ TEST_F(DocumentsTest, EveryPageOfTheManualIsSetWithoutAWarning) {
     // Each option stands in the page with the sign that one types.
     const std::string render = shell("'" GRAFTAL_PROGRAM "' manual render | groff -man -Tascii -P-cbou").out;
     for (const char* option :
-         {"--size WxH", "--engine auto|native|povray", "-o FILE, --output FILE", "--visible-only"})
+         {"--size WxH", "--engine auto|native|gpu|povray", "-o FILE, --output FILE", "--visible-only"})
         EXPECT_THAT(render, HasSubstr(option));
 }
 
@@ -155,7 +155,7 @@ TEST_F(DocumentsTest, AllShellsOfferOptionsAndTheirWords) {
     for (const char* const name : shells) {
         EXPECT_THAT(offers(name, "graftal render --eng"), Each(StartsWith("--engine"))) << name;
         EXPECT_THAT(offers(name, "graftal render --engine "),
-                    UnorderedElementsAre("auto", "povray", "native"))
+                    UnorderedElementsAre("auto", "gpu", "native", "povray"))
             << name;
         EXPECT_THAT(offers(name, "graftal animate --ease s"), UnorderedElementsAre("smooth")) << name;
         EXPECT_THAT(offers(name, "graftal print --after merge"), UnorderedElementsAre("merge_equivalent"))

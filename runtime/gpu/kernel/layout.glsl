@@ -15,7 +15,9 @@
 // an axis of the child's origin in the parent; then the stretch, the child, the material and the levels.
 #define PART_SIZE 4u
 
-// looks[], by part: its tint, the colour fixed and the share that is open to what lies below it.
+// looks[], by part: its tint, the colour fixed and the share that is open to what lies below it; then of a
+// primitive length_in_turns().
+#define LOOK_SIZE 2u
 
 // nodes[]: an object in its own frame.
 #define NODE_SIZE 8u
@@ -43,10 +45,12 @@
 #define KIND_FRUSTUM 7u
 #define KIND_MESH 8u
 
-// triangles[]: corners, then normals at the corners.
+// triangles[]: corners, then normals at the corners; w: their texture coordinates, u of the corners, v of the
+// normals.
 #define TRIANGLE_SIZE 6u
 
-// materials[]: see material() in light.glsl.
+// materials[]: see material_of() in light.glsl. Last its picture: the first of its texels in texels[] or NONE, its
+// width and height, and how often it goes round.
 #define MATERIAL_SIZE 6u
 
 struct Lamp {
@@ -78,7 +82,7 @@ struct Scene {
     uvec4 counts;  // lamps, root's box, root's steps, bounces
     uvec4 visits;  // most of a ray, more, ground's material, catcher's material
     uvec4 sampling; // most samples, lattice's steps, soft film, opaque everywhere
-    uvec4 tables; // the pixel filter's in texels[]
+    uvec4 tables; // the pixel filter's in texels[]; 1 if some texel of a surface is clear
     Lamp lamps[MOST_LAMPS];
 };
 

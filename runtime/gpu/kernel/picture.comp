@@ -9,6 +9,7 @@
 #define INOUT(T) inout T
 #define xyz_of(v) ((v).xyz)
 #define bits_of(v) floatBitsToUint(v)
+#define word_of(x) floatBitsToUint(x)
 #define PI 3.14159265358979f
 #define FAR 1e30f
 #define min_uint(a, b) min(a, b)

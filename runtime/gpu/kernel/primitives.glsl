@@ -168,7 +168,7 @@ bool meet_primitive(uint kind, float shape, vec3 o, vec3 d, float least, float m
 }
 
 /// A triangle of a mesh: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection" (2013).
-bool meet_facet(uint number, vec3 o, vec3 d, float least, float most, OUT(float) t, OUT(vec3) normal) {
+bool meet_facet(uint number, vec3 o, vec3 d, float least, float most, OUT(float) t, OUT(vec3) normal, OUT(vec2) uv) {
     const uint first = number * TRIANGLE_SIZE;
     const vec3 size = abs(d);
     const int z = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -183,6 +183,7 @@ bool meet_facet(uint number, vec3 o, vec3 d, float least, float most, OUT(float)
     const vec3 side = vec3(u[2] * v[1] - v[2] * u[1], u[0] * v[2] - v[0] * u[2], u[1] * v[0] - v[1] * u[0]);
     t = 0.0f;
     normal = vec3(0.0f, 0.0f, 1.0f);
+    uv = vec2(0.0f);
     if ((side.x < 0.0f || side.y < 0.0f || side.z < 0.0f) && (side.x > 0.0f || side.y > 0.0f || side.z > 0.0f))
         return false;
     const float whole = side.x + side.y + side.z;
@@ -190,8 +191,10 @@ bool meet_facet(uint number, vec3 o, vec3 d, float least, float most, OUT(float)
     const vec3 share = side / whole;
     t = dot(share, w) / d[z];
     if (!(t > least && t < most)) return false;
-    const vec3 n = share.x * xyz_of(triangles(first + 3u)) + share.y * xyz_of(triangles(first + 4u)) +
-                   share.z * xyz_of(triangles(first + 5u));
+    const vec4 n0 = triangles(first + 3u), n1 = triangles(first + 4u), n2 = triangles(first + 5u);
+    const vec3 n = share.x * xyz_of(n0) + share.y * xyz_of(n1) + share.z * xyz_of(n2);
+    uv = vec2(dot(share, vec3(triangles(first).w, triangles(first + 1u).w, triangles(first + 2u).w)),
+              dot(share, vec3(n0.w, n1.w, n2.w)));
     if (dot(n, n) > 0.0f) normal = normalize(n);
     return true;
 }

@@ -59,8 +59,62 @@ FRAMES
 /// Boxes and parts that all rays of the thread went to.
 STEPS
 
+/// The point of a surface for its picture.
+struct Site {
+    uint kind;  // of the primitive
+    vec3 point; // in its frame
+    vec2 uv;    // of a mesh
+};
+
+float turn_about_y(vec3 point) {
+    return atan(point.x, point.z) / (2.0f * PI);
+}
+
+/// The place in the picture that is wrapped round a primitive (PrimitiveTraits::texture_point). `turns`: its
+/// length_in_turns().
+vec2 texture_place(Site site, float around, float turns) {
+    const vec3 p = site.point;
+    if (site.kind == KIND_MESH) return site.uv;
+    if (site.kind == KIND_TRIANGLE) return vec2(0.5f + p.x / 1.7320508f, (p.y + 0.5f) / 1.5f);
+    if (site.kind == KIND_CUBE) return 0.5f * vec2(p.x + 1.0f, p.y + 1.0f);
+    const float u = around * turn_about_y(p);
+    if (site.kind == KIND_SPHERE) return vec2(u, 0.5f + asin(clamp(p.y / length(p), -1.0f, 1.0f)) / PI);
+    if (site.kind == KIND_TORUS) return vec2(u, atan(p.y, length(vec2(p.x, p.z)) - 1.0f) / (2.0f * PI));
+    return vec2(u, clamp(floor(around * turns + 0.5f), 1.0f, 1e6f) * p.y);
+}
+
+float linear_of_srgb(float level) {
+    return level <= 0.04045f ? level / 12.92f : pow((level + 0.055f) / 1.055f, 2.4f);
+}
+
+/// The texel of a material's picture: its light, and 1 where it is clear.
+vec4 texel_of(uint material, Site site, float turns) {
+    const vec4 picture = materials(material * MATERIAL_SIZE + 5u);
+    const vec2 place = texture_place(site, picture.w, turns);
+    const vec2 within = place - floor(place);
+    const float x = min(floor(within.x * picture.y), picture.y - 1.0f),
+                y = picture.z - 1.0f - min(floor(within.y * picture.z), picture.z - 1.0f);
+    const uint word = word_of(texels(bits_of(picture).x + uint(y) * uint(picture.y) + uint(x)));
+    const float step = 1.0f / 255.0f;
+    return vec4(linear_of_srgb(step * float(word & 255u)), linear_of_srgb(step * float(word >> 8 & 255u)),
+                linear_of_srgb(step * float(word >> 16 & 255u)), float(word >> 24));
+}
+
+bool has_picture(uint material) {
+    return bits_of(materials(material * MATERIAL_SIZE + 5u)).x != NONE;
+}
+
+/// Whether the surface of a primitive, `part` beyond the way to frame `last`, has none at this site.
+bool is_clear(int last, uint part, Site site) {
+    uint material = bits_of(parts(part * PART_SIZE + 3u)).z;
+    for (int i = last; i > 0 && material == NONE; --i)
+        material = bits_of(parts(frames[i].part * PART_SIZE + 3u)).z;
+    if (material == NONE || !has_picture(material)) return false;
+    return texel_of(material, site, looks(part * LOOK_SIZE + 1u).x).w > 0.0f;
+}
+
 /// The look at the end of the way through frames 1 to `last`, and `part` beyond them if it is a primitive.
-void look_along(int last, uint part, bool is_proxy, INOUT(Hit) hit) {
+void look_along(int last, uint part, bool is_proxy, Site site, INOUT(Hit) hit) {
     vec4 tint = vec4(0.0f, 0.0f, 0.0f, 1.0f);
     vec3 inherited = xyz_of(materials(0u));
     hit.material = 0u;
@@ -73,7 +127,7 @@ void look_along(int last, uint part, bool is_proxy, INOUT(Hit) hit) {
             const vec4 mean = nodes(above * NODE_SIZE + NODE_MEAN);
             inherited = xyz_of(mean) + mean.w * inherited;
         }
-        const vec4 own = looks(step);
+        const vec4 own = looks(step * LOOK_SIZE);
         tint = vec4(xyz_of(tint) + tint.w * xyz_of(own), tint.w * own.w);
         if (facts.z != NONE) {
             hit.material = facts.z;
@@ -87,6 +141,8 @@ void look_along(int last, uint part, bool is_proxy, INOUT(Hit) hit) {
         inherited = xyz_of(mean) + mean.w * inherited;
         const uint finish = bits_of(nodes(node * NODE_SIZE + NODE_LOOK)).x;
         if (finish != NONE) hit.material = finish;
+    } else if (has_picture(hit.material)) {
+        inherited = xyz_of(texel_of(hit.material, site, looks(part * LOOK_SIZE + 1u).x));
     }
     hit.rgb = xyz_of(tint) + tint.w * inherited;
 }
@@ -115,9 +171,9 @@ vec3 limit_normal(int last, float t, vec3 normal) {
 
 /// Shows what was met beyond the way to frame `last`: a primitive, by the part that leads to it, or the proxy of
 /// the frame's own node. `normal`: in its own frame.
-void take_hit(int last, uint part, bool is_proxy, vec3 normal, INOUT(Hit) hit) {
+void take_hit(int last, uint part, bool is_proxy, vec3 normal, Site site, INOUT(Hit) hit) {
     hit.is_level = false;
-    look_along(last, part, is_proxy, hit);
+    look_along(last, part, is_proxy, site, hit);
     vec3 n = normal;
     if (is_proxy) {
         n = limit_normal(last, hit.t, normal);
@@ -160,6 +216,10 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
         float next_t = FAR;
         bool met = false, is_proxy = false;
         vec3 met_normal = vec3(0.0f);
+        Site site;
+        site.kind = KIND_MESH;
+        site.point = vec3(0.0f);
+        site.uv = vec2(0.0f);
         int last = 0; // frame, and the part beyond it, of what was met
         uint leaf = NONE;
         if ((entry & ~ENTRY_NUMBER) == 0u) { // a node of boxes
@@ -195,7 +255,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             float t;
             vec3 normal;
             if (meet_facet(entry & ENTRY_NUMBER, frame.origin, frame.direction, (least - frame.base) / frame.unit,
-                           (hit.t - frame.base) / frame.unit, t, normal)) {
+                           (hit.t - frame.base) / frame.unit, t, normal, site.uv) &&
+                !(scene.tables.y != 0u && is_clear(at - 1, frame.part, site))) {
                 // The frame is the mesh's own: the part that leads to it is the way's last.
                 met = true;
                 met_normal = normal;
@@ -233,8 +294,17 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             vec3 normal;
             const uint kind = marks.y & NODE_KIND;
             if ((marks.y & NODE_PRIMITIVE) != 0u && kind != KIND_MESH) {
-                met = meet_primitive(kind, nodes(node + NODE_LOOK).z, inner.origin, inner.direction, near, far, t,
-                                     normal);
+                const int most_crossings = 4;
+                float begin = near;
+                site.kind = kind;
+                for (int crossing = 0; crossing < most_crossings; ++crossing) {
+                    met = meet_primitive(kind, nodes(node + NODE_LOOK).z, inner.origin, inner.direction, begin, far, t,
+                                         normal);
+                    site.point = inner.origin + t * inner.direction;
+                    if (!met || scene.tables.y == 0u || !is_clear(at, part, site)) break;
+                    begin = t;
+                    met = false;
+                }
             } else if (at + 1 < MOST_FRAMES) {
                 const vec4 ball = nodes(node + NODE_BALL);
                 const float middle = dot(xyz_of(ball) - inner.origin, inner.direction) /
@@ -273,7 +343,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
         if (met) {
             found = true;
             if (any) break;
-            take_hit(last, leaf, is_proxy, met_normal, hit);
+            take_hit(last, leaf, is_proxy, met_normal, site, hit);
         }
         if (visits > scene.visits.x) {
             // What is left is drawn as coarsely as may be, then not at all.

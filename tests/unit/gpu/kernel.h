@@ -51,6 +51,9 @@ inline vec3 xyz_of(vec4 v) {
 inline uvec4 bits_of(vec4 v) {
     return floatBitsToUint(v);
 }
+inline uint word_of(float x) {
+    return floatBitsToUint(x);
+}
 inline vec4 boxes(uint i) {
     return model->boxes[i];
 }

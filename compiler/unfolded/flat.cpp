@@ -61,6 +61,8 @@ class Flattening {
         if (node.primitive) flat.primitive = number_of(*node.primitive);
         flat.unending = node.unending;
         flat.terminal = node.terminal;
+        flat.faint = node.shadowless;
+        flat.widens = node.widens;
         flat.diameter = static_cast<float>(2 * frame_from_graph.linear[0][0] * node.ball.radius);
         const Vec3 centre = frame_from_graph(node.ball.centre);
         for (int axis = 0; axis < 3; ++axis)

@@ -82,7 +82,7 @@ class Flattener {
 
     void add_node(const FlatNode& node) {
         std::uint32_t flags = 0, tree = NONE, stop_tree = NONE;
-        float shape = 0;
+        float shape = 0, inner_radius = 1;
         if (node.primitive != flat_none) {
             const Primitive& primitive = graph_.primitives[node.primitive];
             tree = meshes_[node.primitive];
@@ -91,9 +91,12 @@ class Flattener {
             if (primitive == PrimitiveKind::cylinder || primitive == PrimitiveKind::cone ||
                 primitive == PrimitiveKind::frustum)
                 shape = static_cast<float>(top_radius(primitive));
+            inner_radius = static_cast<float>(traits_of(primitive).inner_radius(primitive));
         } else {
             if (node.unending) flags |= NODE_UNENDING;
             if (node.terminal) flags |= NODE_TERMINAL;
+            if (node.faint) flags |= NODE_FAINT;
+            if (node.widens) flags |= NODE_WIDENS;
             tree = tree_of(node.first_edge, node.edge_count);
             stop_tree = tree_of(node.first_edge + node.edge_count, node.stop_edge_count);
         }
@@ -110,7 +113,7 @@ class Flattener {
                                             proxy_from_frame.translation[row]));
         flat_.nodes.push_back(of_paint(node.mean));
         flat_.nodes.push_back(of_paint(node.proxy));
-        flat_.nodes.emplace_back(flat_bits(material_number(node.finish)), 0.0f, shape, 0.0f);
+        flat_.nodes.emplace_back(flat_bits(material_number(node.finish)), 0.0f, shape, inner_radius);
     }
 
     std::uint32_t tree_of(std::uint32_t first, std::uint32_t count) {
@@ -160,8 +163,9 @@ std::string lack(const FlatRequest& request) {
     for (const CutNode& node : request.prepared.cut.nodes) {
         if (node.unbounded) return "an endless plane";
         if (node.sealed) return "a singular map";
-        if (node.shadowless || node.widens) return "a set without area, which is drawn wider than it is";
     }
+    if (request.detail.error_px > SelfShadows::lit_as_px)
+        return "parts culled that are larger than half a pixel";
     if (request.limits.list || request.view.lights.size() > MOST_LAMPS) return "a long list of lights";
     return "";
 }

@@ -155,8 +155,9 @@ std::string in_words(const NativeReport& report, std::string_view device) {
     if (report.error_px > 0) text += fmt::format(", error {:.3g} px", report.error_px);
     if (const std::optional<double> noise = report.rays.noise_255())
         text += fmt::format(", noise {:.2g} of 255", *noise);
-    text += fmt::format(" in {:.2f} s{}{}, {}", report.seconds, device.empty() ? "" : " on ", device,
-                        rays_text(report.rays, report.seconds));
+    text += device.empty() ? fmt::format(" in {:.2f} s", report.seconds)
+                           : fmt::format(" in {:.3g} s on {}", report.seconds, device);
+    text += fmt::format(", {}", rays_text(report.rays, report.seconds));
     if (report.pictures > 1)
         text += fmt::format("; the first of {} pictures after {:.2f} s", report.pictures,
                             report.first_picture_seconds);

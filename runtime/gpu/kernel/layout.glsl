@@ -26,13 +26,16 @@
 #define NODE_PROXY 2u   // three rows of proxy_from_node
 #define NODE_MEAN 5u    // the mean colour: what is fixed, and how much is open
 #define NODE_STANDIN 6u // likewise, of its proxy
-#define NODE_LOOK 7u    // the proxy's material, nothing, the radius at the end of what tapers
+#define NODE_LOOK 7u    // the proxy's material, nothing, the radius at the end of what tapers, of a primitive the
+                        // radius of the largest ball in it
 
 // Flags of a node. The lowest bits are the kind of a primitive.
 #define NODE_KIND 0xffu
 #define NODE_UNENDING (1u << 8)
 #define NODE_TERMINAL (1u << 9) // where it is cut, what names no material shows its mean colour
 #define NODE_PRIMITIVE (1u << 10)
+#define NODE_FAINT (1u << 11)  // a set without area
+#define NODE_WIDENS (1u << 12) // holds such a set, which is drawn wider than it is
 
 // Kinds of primitives, in the order of GRAFTAL_PRIMITIVE_KINDS; those that the kernel meets as meshes are one.
 #define KIND_TRIANGLE 0u
@@ -64,6 +67,7 @@ struct Lamp {
 struct Scene {
     vec4 right, up, direction; // of the camera; w: half width, half height, 1 if its rays are parallel
     vec4 lens;                 // radius, depth, the length of a pixel
+    vec4 widths;               // least half width over the error, how far it reaches, the world's margin
     vec4 projection;           // pixels per tangent over the error, nearest distance, error in the world, culls
     vec4 edges;                // sine and cosine of half the angle of view, across and up
     vec4 sky_zenith, sky_horizon, sky_axis; // w: from, slope, 1 if the sky's light is shown

@@ -25,7 +25,31 @@ struct Frame {
     uint part;   // the last on the way
     uint node;
     bool cut; // drawn by what stands for its parts
+    bool faint;   // what is drawn stands for a set without area
+    float margin; // by which parts may reach out of their boxes
 };
+
+/// Half of what is drawn at least of a set without area, about a point of the world: Projection's
+/// least_half_width(), or most_half_width() with a negative radius.
+float least_half_width(vec3 from_eye, float radius) {
+    if (scene.projection.w == 0.0f) return 0.0f;
+    if (scene.projection.z > 0.0f) return scene.projection.z;
+    if (scene.direction.w > 0.0f) return scene.widths.x / scene.projection.x;
+    const float distance = max(dot(from_eye, xyz_of(scene.direction)), 0.5f * length(from_eye));
+    return scene.widths.x * max(distance - radius, scene.projection.y) / scene.projection.x;
+}
+
+/// Factors by which a shape grows along its axes, so that a ball of this radius fits in; the rows are those of the map
+/// into its frame, and taken to be at right angles.
+vec3 widening(float radius, vec3 row0, vec3 row1, vec3 row2) {
+    return max(vec3(1.0f), radius * vec3(length(row0), length(row1), length(row2)));
+}
+
+/// The place in the world of a frame's point nearest to the ray.
+vec3 place_of(vec3 point, Frame frame, vec3 origin, vec3 direction) {
+    const float along = dot(point - frame.origin, frame.direction) / dot(frame.direction, frame.direction);
+    return origin + (frame.base + along * frame.unit) * direction;
+}
 
 /// The detail of a length of 1 about a point of the world: Projection::detail_per_unit().
 float detail_per_unit(vec3 from_eye, float radius) {
@@ -205,6 +229,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
     frames[0].part = NONE;
     frames[0].node = NONE;
     frames[0].cut = false;
+    frames[0].faint = false;
+    frames[0].margin = scene.widths.z;
     int at = 0; // the frame
     uint entry = scene.counts.y;
     float entry_t = 0.0f;
@@ -229,8 +255,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 const vec4 low = boxes(first + 2u * i), high = boxes(first + 2u * i + 1u);
                 const uint child = bits_of(low).w;
                 if (child == NONE) continue;
-                const vec3 a = (xyz_of(low) - frame.origin) * reciprocal,
-                           b = (xyz_of(high) - frame.origin) * reciprocal;
+                const vec3 a = (xyz_of(low) - frame.margin - frame.origin) * reciprocal,
+                           b = (xyz_of(high) + frame.margin - frame.origin) * reciprocal;
                 const vec3 enter = min(a, b), leave = max(a, b);
                 const float t0 = max(max(enter.x, enter.y), max(enter.z, near));
                 const float t1 = min(min(leave.x, leave.y), min(leave.z, far));
@@ -286,6 +312,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             inner.node = child;
             inner.steps = frame.steps == NONE ? NONE : frame.steps - levels;
             inner.cut = false;
+            inner.faint = frame.faint;
+            inner.margin = 0.0f;
             const uint node = child * NODE_SIZE;
             const vec4 node_facts = nodes(node + NODE_FACTS);
             const uvec4 marks = bits_of(node_facts);
@@ -297,6 +325,17 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 const int most_crossings = 4;
                 float begin = near;
                 site.kind = kind;
+                vec3 wider = vec3(1.0f);
+                if (frame.faint) {
+                    // About its middle, in the frame that it is drawn in.
+                    const vec4 ball = nodes(frame.node * NODE_SIZE + NODE_BALL);
+                    const vec3 place = place_of(xyz_of(ball), frame, origin, direction);
+                    const float width = least_half_width(place, frame.scale * ball.w) / frame.scale;
+                    wider = widening(width / nodes(node + NODE_LOOK).w, xyz_of(row0), xyz_of(row1), xyz_of(row2));
+                    const vec3 centre = xyz_of(nodes(node + NODE_BALL));
+                    inner.origin = centre + (inner.origin - centre) / wider;
+                    inner.direction /= wider;
+                }
                 for (int crossing = 0; crossing < most_crossings; ++crossing) {
                     met = meet_primitive(kind, nodes(node + NODE_LOOK).z, inner.origin, inner.direction, begin, far, t,
                                          normal);
@@ -305,26 +344,34 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     begin = t;
                     met = false;
                 }
+                normal /= wider;
             } else if (at + 1 < MOST_FRAMES) {
                 const vec4 ball = nodes(node + NODE_BALL);
-                const float middle = dot(xyz_of(ball) - inner.origin, inner.direction) /
-                                     dot(inner.direction, inner.direction);
                 const float radius = inner.scale * ball.w;
-                const vec3 place = origin + (inner.base + middle * inner.unit) * direction;
-                const bool small = hurries || 2.0f * radius * detail_per_unit(place, radius) <= node_facts.x;
+                const vec3 place = place_of(xyz_of(ball), inner, origin, direction);
+                const float detail = 2.0f * radius * detail_per_unit(place, radius);
+                const bool small = hurries || detail <= node_facts.x;
                 inner.cut = ((marks.y & NODE_UNENDING) != 0u && inner.steps == 0u) || (node_facts.x > 0.0f && small);
                 const uint tree = inner.cut ? marks.w : marks.z;
+                if (inner.cut && tree != NONE && (marks.y & NODE_FAINT) != 0u && !inner.faint)
+                    inner.faint = detail <= 1.0f;
+                if ((marks.y & NODE_WIDENS) != 0u)
+                    inner.margin = scene.widths.y * least_half_width(place, -2.0f * radius) / inner.scale;
                 frames[at + 1] = inner;
                 if (inner.cut && tree == NONE) {
                     const vec4 proxy0 = nodes(node + NODE_PROXY), proxy1 = nodes(node + NODE_PROXY + 1u),
                                proxy2 = nodes(node + NODE_PROXY + 2u);
+                    vec3 wider = vec3(1.0f);
+                    if (inner.faint || (marks.y & NODE_FAINT) != 0u)
+                        wider = widening(least_half_width(place, radius) / inner.scale, xyz_of(proxy0), xyz_of(proxy1),
+                                         xyz_of(proxy2));
                     const vec3 o = vec3(dot(xyz_of(proxy0), inner.origin) + proxy0.w,
                                         dot(xyz_of(proxy1), inner.origin) + proxy1.w,
                                         dot(xyz_of(proxy2), inner.origin) + proxy2.w);
                     const vec3 d = vec3(dot(xyz_of(proxy0), inner.direction), dot(xyz_of(proxy1), inner.direction),
                                         dot(xyz_of(proxy2), inner.direction));
-                    met = meet_sphere(o, d, near, far, t, normal);
-                    if (met) normal = rows_transposed(proxy0, proxy1, proxy2, normal);
+                    met = meet_sphere(o / wider, d / wider, near, far, t, normal);
+                    if (met) normal = rows_transposed(proxy0, proxy1, proxy2, normal / wider);
                     is_proxy = true;
                 } else if (tree != NONE) {
                     next = tree;

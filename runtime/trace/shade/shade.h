@@ -41,15 +41,15 @@ struct ShaderLimits {
 /// a transparent surface has so much less of the light that does not shine or mirror. With an index of
 /// refraction the reflection goes by Fresnel's formula. That light is left out of all that does not shine; so
 /// is the reflection of a surface that lets light through. Metals give highlights and reflections
-/// their colour. A blurred surface mirrors and refracts by facets (formulas.glsl), one for each sample. Within a
-/// solid, light fades as its interior says. Lights shine through on straight lines, coloured by each surface
-/// and interior. Shadowless lights are not shadowed and have no specular part. Light from discs and from the
-/// sky is the same sum over their parts, e = L dw / pi. It is estimated by one direction for each (two where
-/// the sky is a picture with bright parts, by the balance heuristic: Veach 1997, 9.2.2). Or a list of lights
-/// (light_list.h) gives it, to which the estimate converges as the list grows. Under a sky that asks for
-/// bounces, surfaces light each other diffusely, and `ambient` is 0; the ray that looks for another surface
-/// looks for the sky too. A picture shows up to 32 surfaces one in the other; the last of them shows black.
-/// Nothing is clamped. (POV-Ray's trace.cpp: TraceRay, ComputeLightedTexture, ComputeOneDiffuseLight,
+/// their colour. A blurred surface mirrors and refracts by facets (formulas.glsl), one for each sample.
+/// Within a solid, light fades as its interior says. Lights shine through on straight lines, coloured by each
+/// surface and interior. Shadowless lights are not shadowed and have no specular part. Light from discs and
+/// from the sky is the same sum over their parts, e = L dw / pi. It is estimated by one direction for each
+/// (two where the sky is a picture with bright parts, by the balance heuristic: Veach 1997, 9.2.2). Or a list
+/// of lights (light_list.h) gives it, to which the estimate converges as the list grows. Under a sky that
+/// asks for bounces, surfaces light each other diffusely, and `ambient` is 0; the ray that looks for another
+/// surface looks for the sky too. A picture shows up to 32 surfaces one in the other; the last of them shows
+/// black. Nothing is clamped. (POV-Ray's trace.cpp: TraceRay, ComputeLightedTexture, ComputeOneDiffuseLight,
 /// ComputeSpecularColour, ComputeReflection, ComputeRefraction, ComputeShadowColour, ComputeSky.)
 class Shader {
   public:

@@ -30,7 +30,8 @@ double mirrored_share(double cosine, double blur) {
             const double along = glm::dot(v, h);
             if (!(along > 0)) continue;
             const Vec3 l = 2 * along * h - v;
-            sum += formulas::unhidden(cosine, blur) * formulas::unhidden(l.z, blur) * along / (cosine * z); // D z dh is even
+            sum += formulas::unhidden(cosine, blur) * formulas::unhidden(l.z, blur) * along /
+                   (cosine * z); // D z dh is even
         }
     }
     return sum / (rings * turns);

@@ -82,6 +82,7 @@ function(graftal_kernel folder kernel)
     COMMAND ${GRAFTAL_GLSLANG} --quiet --target-env vulkan1.2 -S comp -I${PROJECT_SOURCE_DIR} --vn ${name}_spirv
             -o ${header} ${PROJECT_SOURCE_DIR}/${kernel}
     DEPENDS ${PROJECT_SOURCE_DIR}/${kernel} ${texts})
+  add_custom_target(graftal_kernels DEPENDS ${header}) # which tools/tidy makes, too
   target_sources(${layer} PRIVATE ${header})
   target_include_directories(${layer} PRIVATE ${PROJECT_BINARY_DIR}/kernels)
 endfunction()

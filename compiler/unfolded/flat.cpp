@@ -103,11 +103,10 @@ class Flattening {
             static_cast<float>(edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
         flat.turns = static_cast<float>(length_in_turns(edge.node_from_child.linear));
         flat.tint = Paint(edge.tint);
-        for (int k = 0; k < 3; ++k) {
-            for (int row = 0; row < 3; ++row)
-                flat.child_from_parent[static_cast<std::size_t>(3 * k + row)] = FloatPair(linear[k][row]);
-            flat.origin[static_cast<std::size_t>(k)] = FloatPair(parent_from_child.translation[k]);
-        }
+        for (std::size_t i = 0; i < 9; ++i)
+            flat.child_from_parent[i] = FloatPair(linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
+        for (std::size_t i = 0; i < 3; ++i)
+            flat.origin[i] = FloatPair(parent_from_child.translation[static_cast<int>(i)]);
         flat.box = floats_of(box);
         flat_.edges.push_back(flat);
     }

@@ -34,7 +34,7 @@ struct LookKey {
     std::array<std::int32_t, 3> inherited{};
     std::int32_t turns = 0;
     bool colourless = false;
-    auto operator<=>(const LookKey&) const = default;
+    auto operator<=>(const LookKey&) const = default; // NOLINT: clang 14 sees a null pointer here
 };
 
 class LookResolver {

@@ -71,7 +71,7 @@ SceneCounts count(const UnfoldedScene& scene) {
 }
 
 std::string in_words(const BigCount& number) {
-    const std::string digits = number.str();
+    std::string digits = number.str();
     if (digits.size() <= 15) return digits;
     return fmt::format("{}.{}e+{}", digits[0], digits.substr(1, 2), digits.size() - 1);
 }
@@ -122,11 +122,11 @@ bool walk_leaves(const UnfoldedScene& scene, SceneId from, const Affine& world_f
         const ScenePart& part = frame.node->parts[frame.next++];
         const SceneNode& node = scene.nodes[part.node];
         const Affine place = frame.world_from_node * part.node_from_part;
-        SceneLook below = look_through(scene, frame.look, *frame.node, part);
+        const SceneLook below = look_through(scene, frame.look, *frame.node, part);
         if (node.shape) {
             if (!visit({part.node, *node.shape, place, below})) return false;
         } else {
-            stack.push_back({&node, place, std::move(below)});
+            stack.push_back({&node, place, below});
         }
     }
     return true;

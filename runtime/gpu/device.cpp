@@ -88,8 +88,8 @@ class Instance {
         std::erase_if(devices, [&](VkPhysicalDevice device) {
             return properties(device).apiVersion < VK_API_VERSION_1_2 || !queue_family(device);
         });
-        std::ranges::stable_partition(devices,
-                                      [&](VkPhysicalDevice device) { return !info(device).is_processor; });
+        std::stable_partition(devices.begin(), devices.end(),
+                              [&](VkPhysicalDevice device) { return !info(device).is_processor; });
         return devices;
     }
 
@@ -448,7 +448,7 @@ Status Gpu::run(std::span<const std::byte> push, std::uint32_t groups, double& s
     Parts& parts = *parts_;
     const Api& api = parts.instance.api;
     const auto begin = std::chrono::steady_clock::now();
-    const Status status = parts.submit([&] {
+    Status status = parts.submit([&] {
         parts.wait_for_writes();
         api.vkCmdBindPipeline(parts.commands, VK_PIPELINE_BIND_POINT_COMPUTE, parts.pipeline);
         api.vkCmdBindDescriptorSets(parts.commands, VK_PIPELINE_BIND_POINT_COMPUTE, parts.layout, 0, 1,

@@ -61,12 +61,11 @@ class Flattener {
         edge.child = graph_.root;
         edge.stretch = static_cast<float>(place.linear[0][0]);
         const Mat3 inverse_linear = inverse(place).linear;
-        for (int k = 0; k < 3; ++k) {
-            for (int row = 0; row < 3; ++row)
-                edge.child_from_parent[static_cast<std::size_t>(3 * k + row)] =
-                    FloatPair(inverse_linear[k][row]);
-            edge.origin[static_cast<std::size_t>(k)] = FloatPair(place.translation[k] - eye[k]);
-        }
+        for (std::size_t i = 0; i < 9; ++i)
+            edge.child_from_parent[i] =
+                FloatPair(inverse_linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
+        for (std::size_t i = 0; i < 3; ++i)
+            edge.origin[i] = FloatPair(place.translation[static_cast<int>(i)] - eye[static_cast<int>(i)]);
         add_edge(edge);
     }
 

@@ -11,6 +11,7 @@
 #include "runtime/render/file_film.h"
 #include "runtime/render/fit_picture.h"
 #include "runtime/render/native_engine.h"
+#include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
 
 namespace graftal {
@@ -56,7 +57,7 @@ class GpuDrawing {
         const double most_steps = options_.work(view_.quality) * steps_a_second;
         std::uint32_t count = options_.progressive ? 1 : most;
         for (std::uint32_t done = 0;; ++pass_) {
-            const Status status = drawing.sample(count, [&](double share) {
+            Status status = drawing.sample(count, [&](double share) {
                 tell((done + share * (count - done)) / most);
                 return !cancel_.raised();
             });

@@ -97,6 +97,7 @@ Status GpuPicture::read(const Film& film, double noise_255, Image& picture, Seen
             picture.pixels[3 * i + static_cast<std::size_t>(c)] = sum.w > 0 ? sum[c] / sum.w : 0;
         seen.samples += static_cast<double>(sum.w);
         seen.steps += 1e3 * static_cast<double>(spread.z);
+        seen.lost += static_cast<double>(spread.w);
         if (samples_.lattice > 0 || !(sum.w > 1)) continue;
         const double mean = spread.x, count = sum.w;
         const double error = std::sqrt(std::max<double>(spread.y, 0) / (count - 1) / count);

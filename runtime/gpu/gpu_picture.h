@@ -38,6 +38,7 @@ class GpuPicture {
     struct Seen {
         double samples = 0;      ///< of all pixels together
         double steps = 0;        ///< boxes and parts that rays went to
+        double lost = 0;         ///< parts that rays had no room for: then the picture is wrong
         double noise_255 = 0;    ///< the mean error of a pixel as the film shows it; 0 where it is not known
         std::uint64_t noisy = 0; ///< pixels with more noise than is asked for
     };

@@ -65,6 +65,7 @@ class GpuDrawing {
             GpuPicture::Seen seen;
             if (Status read = drawing.read(view_.film, plan_.wanted.noise_255, picture_, seen); !read.ok())
                 return read;
+            if (seen.lost > 0) return Status::failure("its kernel has no room for parts that lie so deep");
             note(seen, lattice > 0 ? 0 : count, drawing.seconds());
             film_.tile(window_, picture_, pass_);
             if (Status shown = film_.end(pass_, picture_, nullptr); !shown.ok()) return shown;

@@ -17,7 +17,7 @@
 #define LIMIT_LEVELS 6
 #define LIMIT_RATIO 1.5f
 #define FRAMES Frame frames[MOST_FRAMES];
-#define STEPS uint steps = 0u;
+#define STEPS uint steps = 0u, lost = 0u;
 #define WAITING_PATHS Path waiting_paths[MOST_WAITING];
 
 #include "runtime/gpu/kernel/layout.glsl"

@@ -47,7 +47,8 @@ float filter_offset(float place) {
 }
 
 /// Adds samples `first` to `first + count` to a pixel. `film`: the weighted sum of its light and the weights;
-/// then the mean and the sum of squares of the luminance, and the steps of rays in thousands. With `lattice` the samples are those of a lattice of
+/// then the mean and the sum of squares of the luminance, the steps of rays in thousands, and parts that
+/// had no room. With `lattice` the samples are those of a lattice of
 /// as many squares along each side of the pixel, as POV-Ray takes it, or with 1 the pixel's middle alone.
 void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint count, uint lattice) {
     vec4 sum = film[SUMS_A_PIXEL * at], noise = film[SUMS_A_PIXEL * at + 1u];
@@ -81,6 +82,7 @@ void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, ui
         noise.y += before * (luminance - noise.x);
     }
     noise.z += 1e-3f * float(steps);
+    noise.w += float(lost);
     film[SUMS_A_PIXEL * at] = sum;
     film[SUMS_A_PIXEL * at + 1u] = noise;
 }

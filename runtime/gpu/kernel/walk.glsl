@@ -1,7 +1,7 @@
 // Rays through the cyclic graph itself, depth first and the nearest first, into the frame of each part, as deep
 // as the parts are that the view shows (Traversal of runtime/trace does the same in doubles).
 
-/// Frames on the way from the root, and entries for later. A ray that needs more sees what it has by then.
+/// Frames on the way from the root, and entries for later. A ray that needs more is counted as lost.
 #define MOST_FRAMES 64
 #define MOST_LATER 320
 
@@ -80,7 +80,7 @@ vec3 normal_above(uint part, vec3 normal) {
 
 FRAMES
 
-/// Boxes and parts that all rays of the thread went to.
+/// Boxes and parts that all rays of the thread went to, and parts that they had no room for.
 STEPS
 
 /// The point of a surface for its picture.
@@ -270,7 +270,9 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     next = child;
                     next_t = t;
                 }
-                if (put != NONE && later < MOST_LATER) {
+                if (put != NONE && later == MOST_LATER) {
+                    ++lost;
+                } else if (put != NONE) {
                     later_entry[later] = put;
                     later_frame[later] = at;
                     later_t[later] = put_t;
@@ -378,6 +380,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     next_frame = at + 1;
                     next_t = inner.base;
                 }
+            } else {
+                ++lost;
             }
             if (met) {
                 met_normal = normal;

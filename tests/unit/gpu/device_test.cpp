@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -88,6 +89,25 @@ TEST(Gpu, WindowsHaveThePixelsOfTheWhole) {
         for (int x = 0; x < 3 * window.width; ++x)
             ASSERT_EQ(part.gpu.pixels[static_cast<std::size_t>(3 * window.width * y + x)],
                       whole.gpu.pixels[static_cast<std::size_t>(3 * 40 * (y + window.y) + x + 3 * window.x)]);
+}
+
+/// A chain of objects, each a step further than the one that holds it.
+Graph chain(int length) {
+    Graph graph = test::empty_graph();
+    ObjectId last = graph.root;
+    for (int i = 0; i < length; ++i) {
+        const ObjectId next = graph.add({"link" + std::to_string(i), {}, {}, {}, {}});
+        test::place(graph, last, next, Affine::translate({0.3, 0.05, 0}));
+        test::place(graph, next, graph.primitive(PrimitiveKind::cube), Affine::scale(Vec3(0.2)));
+        test::place(graph, next, graph.primitive(PrimitiveKind::sphere), Affine::scale(Vec3(0.25)));
+        last = next;
+    }
+    return graph;
+}
+
+TEST(Gpu, PartsThatLieTooDeepAreCounted) {
+    EXPECT_EQ(draw(chain(20), {0, 0, 40, 30}, 1).seen.lost, 0);
+    EXPECT_GT(draw(chain(200), {0, 0, 40, 30}, 1).seen.lost, 0);
 }
 
 TEST(Gpu, CanBeInterrupted) {

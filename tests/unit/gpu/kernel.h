@@ -18,7 +18,7 @@
 #define LIMIT_LEVELS 6
 #define LIMIT_RATIO 1.5f
 #define FRAMES inline thread_local Frame frames[MOST_FRAMES];
-#define STEPS inline thread_local uint steps = 0;
+#define STEPS inline thread_local uint steps = 0, lost = 0;
 #define WAITING_PATHS inline thread_local Path waiting_paths[MOST_WAITING];
 #define filter_table() scene.tables.x
 

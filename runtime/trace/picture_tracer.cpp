@@ -69,6 +69,7 @@ class Worker {
             const glm::dvec2 point = glm::fract(static_cast<double>(i + 1) * r2_step);
             Sight seen = sight(point.x * size.width, point.y * size.height);
             ++camera_rays_;
+            traversal_.begin_path();
             shader_.radiance(seen.ray, seen.random);
         }
         return true;
@@ -125,6 +126,7 @@ class Worker {
                 const auto number = static_cast<std::size_t>(i - first);
                 ++camera_rays_;
                 SurfaceHit met;
+                traversal_.begin_path();
                 const Rgb rgb =
                     shader_.radiance(rays[number], randoms[number], aovs_ ? &met : nullptr, ahead_, number);
                 if (aovs_) seen_ = AovSample(met, rays[number], view_);

@@ -31,7 +31,7 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
         self.best_.found = false;
         self.best_.t = range.most;
         self.ray_ = ray;
-        self.visit_limit_ = self.visits_ + model.most_visits;
+        self.visit_limit_ = self.visits_ + self.visits_allowed();
         self.hurries_ = false;
         if (!enter_world(ray)) return false;
         if (self.even_root_.tree == no_tree) return go_on({});

@@ -44,7 +44,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
             entry = *from;
         } else {
             self.best_.t = range.most;
-            self.visit_limit_ = self.visits_ + model.most_visits;
+            self.visit_limit_ = self.visits_ + self.visits_allowed();
             if (!enter_world(ray)) return false;
         }
         for (bool more = true; more || pop(later.first, entry);) {

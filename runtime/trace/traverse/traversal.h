@@ -58,6 +58,10 @@ class Traversal final : public Surfaces {
     /// Whether several rays may go together at all: where what they meet depends on no order of parts.
     bool takes_packets() const { return packet_ != nullptr; }
 
+    /// Begins with another ray of the camera. It, and all rays that it makes, may go into some times as many
+    /// parts as one ray may: light that goes through thousands of panes would not come to an end.
+    void begin_path() { path_limit_ = visits_ + most_full_rays * model_.most_visits; }
+
     /// Nodes and primitives that rays went into so far.
     std::uint64_t visits() const { return visits_; }
     /// Work of these visits and of boxes (RayWork, compiler/detail/work.h).
@@ -223,6 +227,12 @@ class Traversal final : public Surfaces {
     bool resume(const Entry& from, const RayRange& range);
     /// Takes patience for parts that lanes saw are not met, as visits to them would.
     void lose_patience(std::uint64_t parts) { patience_ -= std::min(patience_, parts); }
+    /// Parts that the next ray may go into: few where the camera's ray has had its share.
+    std::uint64_t visits_allowed() const {
+        constexpr std::uint64_t least = 32;
+        if (visits_ >= path_limit_) return std::min(least, model_.most_visits);
+        return std::min(path_limit_ - visits_, model_.most_visits);
+    }
     /// False once the ray went into too many parts, and hurrying did not help.
     bool goes_on();
     /// intersect() of intersect.h within the visits that the ray has left, and what that took.
@@ -274,8 +284,10 @@ class Traversal final : public Surfaces {
     std::uint64_t patience_ = 0;          ///< of the ray: visits
     std::vector<std::uint32_t> flat_way_; ///< edges from the frame to the part under way
     std::uint64_t visit_limit_ = 0;       ///< of the ray
-    bool hurries_ = false;                ///< the ray has passed the limit
-    bool met_flat_ = false;               ///< rays of a packet that went on alone met flat parts
+    static constexpr std::uint64_t most_full_rays = 4;
+    std::uint64_t path_limit_ = UINT64_MAX; ///< of the camera's ray
+    bool hurries_ = false;                  ///< the ray has passed the limit
+    bool met_flat_ = false;                 ///< rays of a packet that went on alone met flat parts
     std::vector<std::uint32_t>
         way_; ///< edges through the frames to the best hit, those from cut nodes marked
     std::vector<std::uint32_t> path_; ///< of the graph, likewise, once the ray is done

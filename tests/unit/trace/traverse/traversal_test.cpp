@@ -348,5 +348,27 @@ TEST(Traversal, SurvivesRaysAndModelsOfAllKinds) {
     shoot(*traced(tiny, exact()), 2000);
 }
 
+/// Rays through the boxes of thousands of triangles, beside the triangles.
+TEST(Traversal, TheRaysOfOneCameraRayHaveAShareTogether) {
+    Graph graph = test::empty_graph();
+    const ObjectId triangle = graph.primitive(PrimitiveKind::triangle);
+    for (int i = 0; i < 3000; ++i)
+        test::place(graph, graph.root, triangle, Affine::translate({0, 0, -0.01 * i}));
+    const auto model = test::traced(graph, {});
+    model->most_visits = 2000;
+    const auto visits = [&](bool each) {
+        Traversal traversal(*model);
+        traversal.begin_path();
+        SurfaceHit hit;
+        for (int i = 0; i < 30; ++i) {
+            if (each) traversal.begin_path();
+            traversal.closest({Vec3(0.7, 0.8, 5), Vec3(0, 0, -1)}, {}, hit);
+        }
+        return traversal.visits();
+    };
+    EXPECT_GT(visits(true), 30 * 2000u);
+    EXPECT_LT(visits(false), visits(true) / 3);
+}
+
 } // namespace
 } // namespace graftal

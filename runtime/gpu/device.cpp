@@ -149,7 +149,6 @@ std::vector<GpuInfo> gpu_devices(std::string* why) {
 struct Gpu::Buffer {
     VkBuffer buffer = VK_NULL_HANDLE;
     VkDeviceMemory memory = VK_NULL_HANDLE;
-    VkDeviceSize size = 0;
 };
 
 struct Gpu::Parts {
@@ -220,7 +219,6 @@ struct Gpu::Parts {
         info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
         info.size = size;
         info.usage = usage;
-        made.size = size;
         if (const VkResult result = api.vkCreateBuffer(device, &info, nullptr, &made.buffer);
             result != VK_SUCCESS)
             return failure("making a buffer", result);

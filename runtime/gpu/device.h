@@ -27,7 +27,6 @@ std::vector<GpuInfo> gpu_devices(std::string* why = nullptr);
 class Gpu {
   public:
     struct Buffer;
-    using BufferId = std::size_t;
 
     /// Opens the device with this number of gpu_devices(); null, and a status, where that fails.
     static std::unique_ptr<Gpu> open(std::size_t number, Status& status);

@@ -171,8 +171,8 @@ void add_camera(const FlatRequest& request, Scene& scene) {
     constexpr double infinite = 1e30;
     const ShaderLimits& limits = request.limits;
     scene.limits = {static_cast<float>(std::min(limits.farthest, infinite)),
-                    static_cast<float>(limits.least_weight), 0,
-                    static_cast<float>(request.sampling.noise_255)};
+                    static_cast<float>(limits.least_weight), static_cast<float>(request.sampling.noise_255),
+                    0};
     scene.visits.x = most_steps;
     scene.visits.y = more_steps;
 }
@@ -215,7 +215,7 @@ void add_light(const FlatRequest& request, FlatModel& flat) {
         scene.haze_rgb = flat_four(view.haze->rgb);
     }
     scene.ambient.w = static_cast<float>(view.film.exposure);
-    scene.sampling = {0, 0, view.film.soft ? 1 : 0, opaque ? 1 : 0};
+    scene.looks = {view.film.soft ? 1 : 0, opaque ? 1 : 0, 0, 0};
     scene.tables.x = static_cast<std::uint32_t>(flat.texels.size());
     const PixelFilter filter;
     static_assert(PixelFilter::steps == FILTER_STEPS);

@@ -1,7 +1,9 @@
 #include "runtime/render/gpu_engine.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -147,11 +149,12 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
     if (const std::optional<FlatModel> model = drawing.flat(why)) {
         Status status;
         const std::unique_ptr<Gpu> gpu = Gpu::open(options.device, status);
-        compilation.times.push_back({"prepare", preparing.seconds()});
+        const double prepared_seconds = preparing.seconds();
         if (gpu) status = drawing.draw(*model, *gpu);
         if (status.ok() || cancel.raised()) {
             compilation.status = status;
             if (!drawing.has_begun()) return std::nullopt;
+            compilation.times.push_back({"prepare", prepared_seconds});
             compilation.times.push_back({"trace", drawing.report().seconds});
             return report_of(drawing.report(), gpu->info().name);
         }
@@ -159,15 +162,22 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
     } else {
         why = "its kernel does not know " + why;
     }
-    std::optional<DrawReport> report = native_engine.draw(session, options, compilation);
     note_native(prepared, why, compilation);
-    return report;
+    const std::optional<NativeReport> drawn = trace_model(prepared, options, preparing, cancel, compilation);
+    return drawn ? std::optional(report_of(*drawn)) : std::nullopt;
 }
 
 } // namespace
 
 bool has_gpu() {
     static const bool found = [] {
+        // Without a node of a card there is none, and Vulkan's drivers by software take long to start.
+        constexpr const char* nodes[] = {"/dev/dri", "/dev/nvidiactl", "/dev/dxg"};
+        if (std::ranges::none_of(nodes, [](const char* node) {
+                std::error_code none;
+                return std::filesystem::exists(node, none);
+            }))
+            return false;
         const std::vector<GpuInfo> devices = gpu_devices();
         return !devices.empty() && !devices.front().is_processor;
     }();

@@ -10,7 +10,7 @@ namespace {
 
 class Surroundings : public CommandLine {
   protected:
-    /// What `stats` says of a scene that draws without a warning.
+    /// Counts by `stats` of a scene that draws without a warning.
     nlohmann::json size_of(const std::string& scene) const {
         const RunResult result =
             graftal("stats --json '" + source_path("scenes/surroundings/" + scene + ".lsys") + "'");

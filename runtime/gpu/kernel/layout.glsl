@@ -82,10 +82,10 @@ struct Scene {
     vec4 haze;     // distance (0: none), base, height (0: even all over)
     vec4 haze_rgb; //
     vec4 ambient;  // light; w: exposure
-    vec4 limits;   // farthest, least weight, 1 if light is listed, noise in 255ths
+    vec4 limits;   // farthest, least weight, noise in 255ths
     uvec4 counts;  // lamps, root's box, root's steps, bounces
     uvec4 visits;  // most of a ray, more, ground's material, catcher's material
-    uvec4 sampling; // most samples, lattice's steps, soft film, opaque everywhere
+    uvec4 looks;    // 1 for a soft film, 1 where all is opaque
     uvec4 tables; // the pixel filter's in texels[]; 1 if some texel of a surface is clear
     Lamp lamps[MOST_LAMPS];
 };

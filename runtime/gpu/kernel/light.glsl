@@ -110,8 +110,7 @@ vec4 solid_of(Material material) {
 }
 
 bool is_blurred(Material material) {
-    return material.blur > 0.0f && scene.limits.z == 0.0f &&
-           (material.reflection > 0.0f || material.transparency > 0.0f);
+    return material.blur > 0.0f && (material.reflection > 0.0f || material.transparency > 0.0f);
 }
 
 vec3 colour_of_pane(Material material, vec3 rgb) {
@@ -430,7 +429,7 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
             most = FAR;
         }
         Hit hit;
-        const bool any = to_light && scene.sampling.w != 0u;
+        const bool any = to_light && scene.looks.y != 0u;
         const float farthest = min(most, scene.limits.x);
         bool found = walk(from, towards, least, farthest, any, hit);
         float level;

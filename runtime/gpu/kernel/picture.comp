@@ -13,7 +13,6 @@
 #define PI 3.14159265358979f
 #define FAR 1e30f
 #define min_uint(a, b) min(a, b)
-#define filter_table() scene.tables.x
 #define LIMIT_LEVELS 6
 #define LIMIT_RATIO 1.5f
 #define FRAMES Frame frames[MOST_FRAMES];

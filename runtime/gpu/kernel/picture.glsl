@@ -29,7 +29,7 @@ float srgb_encoded(float light) {
 /// A grey light as the film shows it (image/develop.h), in 255ths.
 float shown_255(float light) {
     const float x = scene.ambient.w * light;
-    return 255.0f * srgb_encoded(scene.sampling.z != 0u && x > 0.5f ? 1.0f - 0.5f * exp(1.0f - 2.0f * x) : x);
+    return 255.0f * srgb_encoded(scene.looks.x != 0u && x > 0.5f ? 1.0f - 0.5f * exp(1.0f - 2.0f * x) : x);
 }
 
 /// The standard error of a pixel's mean (NoiseMeter::error_255()).
@@ -43,7 +43,7 @@ float filter_offset(float place) {
     const float at = place * float(FILTER_STEPS);
     const uint step = min_uint(uint(at), uint(FILTER_STEPS) - 1u);
     const float share = at - float(step);
-    return mix(texels(filter_table() + step), texels(filter_table() + step + 1u), share);
+    return mix(texels(scene.tables.x + step), texels(scene.tables.x + step + 1u), share);
 }
 
 /// Adds samples `first` to `first + count` to a pixel. `film`: the weighted sum of its light and the weights;
@@ -66,7 +66,7 @@ void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, ui
                 weight = (x > 0u && x < lattice ? 1.0f : 0.5f) * (y > 0u && y < lattice ? 1.0f : 0.5f);
             }
         } else {
-            if (sum.w > 0.0f && uint(sum.w) % 16u == 0u && error_255(sum.w, noise.x, noise.y) < scene.limits.w)
+            if (sum.w > 0.0f && uint(sum.w) % 16u == 0u && error_255(sum.w, noise.x, noise.y) < scene.limits.z)
                 break;
             const vec2 place = next_place(stream);
             in_pixel += vec2(filter_offset(place.x), filter_offset(place.y));

@@ -71,11 +71,11 @@ vec3 sky_light(vec3 direction) {
 }
 
 bool has_sampled_sky() {
-    return int(scene.light_up.w) != LIGHT_NONE && scene.limits.z == 0.0f;
+    return int(scene.light_up.w) != LIGHT_NONE;
 }
 
 bool has_bright_sky() {
-    return scene.picture_from_world[2].w > 0.0f && scene.limits.z == 0.0f;
+    return scene.picture_from_world[2].w > 0.0f;
 }
 
 /// A number of the sums of chances: rows follow the texels, and columns these.

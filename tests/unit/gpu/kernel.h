@@ -20,7 +20,6 @@
 #define FRAMES inline thread_local Frame frames[MOST_FRAMES];
 #define STEPS inline thread_local uint steps = 0, lost = 0;
 #define WAITING_PATHS inline thread_local Path waiting_paths[MOST_WAITING];
-#define filter_table() scene.tables.x
 
 namespace graftal::kernel {
 

@@ -24,7 +24,6 @@ constexpr double planet_radius = 500;
 constexpr double largest_cloud = 1.5; ///< wavelength of the coarsest noise
 constexpr int octaves = 8;
 constexpr double seen_through_air = 14; ///< the distance at which a third of a cloud's light is left
-constexpr int columns = 2048, rows = 1024;
 
 std::uint32_t mixed(std::uint32_t x) {
     x = (x ^ (x >> 16)) * 0x7feb352du;
@@ -199,10 +198,11 @@ struct Layer {
 
 } // namespace
 
-std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clouds& clouds) {
+std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clouds& clouds, int rows) {
     GRAFTAL_CHECK(!sky.picture && sky.up == Vec3(0, 1, 0),
                   "cloudy_picture: an upright sky without a picture");
     const Layer layer(sky, clouds);
+    const int columns = 2 * rows;
     std::vector<SkyPicture::Texel> texels;
     texels.reserve(static_cast<std::size_t>(columns) * rows);
     for (int row = 0; row < rows; ++row)
@@ -216,11 +216,26 @@ std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clou
     return std::make_shared<const SkyPicture>(columns, rows, std::move(texels));
 }
 
+int cloud_rows(double work_seconds) {
+    constexpr double share = 1.0 / 6;
+    constexpr double whole_s = 2.5; // of a sky with many clouds, at most_cloud_rows
+    int rows = most_cloud_rows;
+    for (double seconds = whole_s; rows > 128 && seconds > share * work_seconds; seconds /= 4)
+        rows /= 2;
+    return rows;
+}
+
+void CloudPictures::set_rows(int rows) {
+    const std::lock_guard lock(mutex_);
+    rows_ = rows;
+}
+
 std::shared_ptr<const SkyPicture> CloudPictures::picture(const SkyLight& sky, const Clouds& clouds) {
     const std::lock_guard lock(mutex_);
     std::shared_ptr<const SkyPicture> picture = picture_.lock();
-    if (picture && sky_ == sky && clouds_ == clouds) return picture;
-    picture = cloudy_picture(sky, clouds);
+    if (picture && sky_ == sky && clouds_ == clouds && picture_rows_ == rows_) return picture;
+    picture = cloudy_picture(sky, clouds, rows_);
+    picture_rows_ = rows_;
     sky_ = sky;
     clouds_ = clouds;
     picture_ = picture;

@@ -16,24 +16,36 @@ struct Clouds {
     bool operator==(const Clouds&) const = default;
 };
 
+/// Rows of a sky's picture, all round; it has twice as many columns.
+inline constexpr int most_cloud_rows = 1024;
+
 /// The light of the sky above the horizon with clouds before it; below, the sky as it is. The layer is a
 /// sphere about a large planet, so that clouds are smaller and paler towards the horizon. How thick they are
 /// is a sum of gradient noise (Perlin, "Improving noise", 2002) of falling wavelengths; light comes through
 /// them and is scattered forwards by Henyey and Greenstein's function (1941), and is lost on its way from the
 /// sun. No measured sky: a likeness. Requires an upright sky that shows no picture. The same values give the
 /// same texels.
-std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clouds& clouds);
+std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clouds& clouds,
+                                                 int rows = most_cloud_rows);
+
+/// Rows for a picture that may take so many seconds of one processor: a sixth of them at most go to its sky,
+/// down to 128 rows.
+int cloud_rows(double work_seconds);
 
 /// The last cloudy_picture(), as long as somebody uses it: framing asks for it several times, and the
 /// pictures of a film have one sky. Many threads may ask.
 class CloudPictures {
   public:
     std::shared_ptr<const SkyPicture> picture(const SkyLight& sky, const Clouds& clouds);
+    /// From the next picture on.
+    void set_rows(int rows);
 
   private:
     std::mutex mutex_;
+    int rows_ = most_cloud_rows;
     SkyLight sky_;
     Clouds clouds_;
+    int picture_rows_ = 0;
     std::weak_ptr<const SkyPicture> picture_;
 };
 

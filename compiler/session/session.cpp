@@ -216,12 +216,14 @@ bool Session::need_analysed(const StageOptions& options, bool wanted, Compilatio
 bool Session::need_viewed(const StageOptions& options, Compilation& compilation) {
     if (!need_analysed(options, false, compilation)) return false;
     const auto key_now = [&] {
-        return ViewKey{analysed_.serial(), steps_left(options.lower, reads_steps_), options.view};
+        return ViewKey{analysed_.serial(), steps_left(options.lower, reads_steps_), options.view,
+                       cloud_rows(options.detail.work_seconds)};
     };
     if (!viewed_.is_of(key_now())) {
         if (!need_analysed(options, true, compilation)) return false;
         if (refuse_divergent(*analysed_.value(), compilation.diagnostics)) return false;
-        viewed_.run(key_now(), analysed_.findings(), [&](const ViewKey&, Diagnostics& findings) {
+        viewed_.run(key_now(), analysed_.findings(), [&](const ViewKey& key, Diagnostics& findings) {
+            clouds_->set_rows(key.cloud_rows);
             ++runs_.viewed;
             return StageClock(compilation.times).run("frame", [&] {
                 const std::optional<unsigned> steps = levels_of(*analysed_.value(), options.lower.steps);

@@ -115,6 +115,7 @@ class Session {
         std::uint64_t analysed = 0;
         std::optional<unsigned> steps;
         ViewOptions options;
+        int cloud_rows = 0; ///< by the work allowed
         bool operator==(const ViewKey&) const = default;
     };
     struct PrepareKey {

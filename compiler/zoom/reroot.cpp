@@ -302,8 +302,10 @@ class Rerooter {
             return refuse(fmt::format("the address ends after {} steps, before the zoom does",
                                       focus_.path.steps.size()),
                           "make it longer, for instance with a repetition at its end: (a.b)*");
+        const bool ends = !model_.components.unending[model_.graph.root];
         return refuse("the zoom needs more digits than the point has",
-                      "give an address instead of the point: --at a.b.(c.d)*");
+                      ends ? "zoom in less: this model does not recur, so it has nothing as small as that"
+                           : "give an address instead of the point: --at a.b.(c.d)*");
     }
 
     bool refuse_nothing() {

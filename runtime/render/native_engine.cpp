@@ -169,8 +169,7 @@ std::string in_words(const NativeReport& report, std::string_view device) {
 DrawStart start_of(const FittedModel& fitted, const PicturePlan& plan, bool by_default) {
     DrawStart start{fitted.seconds, fitted.whole_seconds, {}};
     if (by_default && fitted.sampling != plan.wanted)
-        start.fewer =
-            fmt::format("{} in place of {:g}", samples_text(fitted.sampling), plan.wanted.samples_a_pixel());
+        start.fewer = fmt::format("{} of {:g}", samples_text(fitted.sampling), plan.wanted.samples_a_pixel());
     return start;
 }
 

@@ -25,7 +25,7 @@ struct DrawProgress {
 struct DrawStart {
     double seconds = 0;       ///< of one processor that it will take
     double whole_seconds = 0; ///< of one processor, for the picture as asked
-    std::string fewer;        ///< "4 samples per pixel in place of 64": what it does without, though nobody
+    std::string fewer;        ///< "4 samples per pixel of 64": what it does without, though nobody
                               ///< asked for less work; or ""
 };
 

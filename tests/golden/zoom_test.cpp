@@ -56,6 +56,14 @@ TEST_F(Zoom, WrongAddressesAndFactors) {
     }
 }
 
+/// Nothing recurs there, so no address leads deeper.
+TEST_F(Zoom, OfAModelThatEndsIsToldToBeTooDeep) {
+    write("m.inst", "object m { union: cube  union: sphere translate: 2, 0, 0 }\n");
+    const RunResult result = graftal("render m.inst --zoom 1e40 -o a.png --size 48x27");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, HasSubstr("hint: zoom in less: this model does not recur"));
+}
+
 /// A small model, seen from far away.
 TEST_F(Zoom, EverySmallZoomIsDrawnOrRefused) {
     write("m.inst", "object m { instance: ball scale: 1e-90 }\nobject ball { sphere }\n");

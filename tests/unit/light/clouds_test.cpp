@@ -130,5 +130,26 @@ TEST(Clouds, AnOwnerDrawsAPictureOnceWhileItIsInUse) {
     EXPECT_TRUE(unused.expired()) << "the owner keeps no memory";
 }
 
+TEST(Clouds, LittleWorkMakesASmallSky) {
+    EXPECT_EQ(cloud_rows(15), most_cloud_rows);
+    EXPECT_EQ(cloud_rows(5), most_cloud_rows / 2);
+    EXPECT_EQ(cloud_rows(2), most_cloud_rows / 4);
+    EXPECT_EQ(cloud_rows(0.01), 128);
+    CloudPictures pictures;
+    const auto whole = pictures.picture(blue_sky(), clouds_of(0.4));
+    pictures.set_rows(128);
+    const auto small = pictures.picture(blue_sky(), clouds_of(0.4));
+    EXPECT_EQ(small->width(), 256);
+    EXPECT_EQ(pictures.picture(blue_sky(), clouds_of(0.4)), small);
+    // It is the same sky.
+    Rgb sum(0.0);
+    int looks = 0;
+    over_sky(0.1, [&](Vec3 direction) {
+        sum += glm::abs(whole->radiance(direction) - small->radiance(direction));
+        ++looks;
+    });
+    EXPECT_LT(glm::length(sum / static_cast<double>(looks)), 0.1);
+}
+
 } // namespace
 } // namespace graftal

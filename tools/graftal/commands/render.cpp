@@ -28,8 +28,8 @@ std::string start_text(const Engine& engine, const RenderOptions& render, const 
     const bool best = render.compile.view.quality == Quality::best;
     if (!start.fewer.empty() && !best)
         return fmt::format(
-            "a picture of {}, in about {} seconds of one processor; '--quality best' takes its "
-            "time, '--work {}' draws all",
+            "{}, in about {} seconds of one processor; a smoother picture takes '--work {}' or "
+            "'--quality best'",
             start.fewer, seconds, readable_seconds(1.2 * start.whole_seconds));
     constexpr double long_seconds = 20;
     return start.seconds > long_seconds ? fmt::format("about {} seconds of one processor", seconds) : "";

@@ -19,6 +19,7 @@
 #include "compiler/detail/placed_set.h"
 #include "compiler/detail/primitive_numbers.h"
 #include "compiler/detail/shell/shell.h"
+#include "compiler/primitives/part_size.h"
 #include "compiler/primitives/tessellate.h"
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/check.h"
@@ -46,6 +47,7 @@ struct PartKey {
     std::int64_t material = -1; ///< none: -1
     bool textured = false;
     std::array<double, 4> tint{}; ///< of textured leaves
+    double size = 1;              ///< of leaves with a pattern
     double light_share = 1;
     auto operator<=>(const PartKey&) const = default;
 };
@@ -55,6 +57,7 @@ struct BakedPart {
     std::optional<MaterialId> material;
     bool textured = false;
     PathTint tint;
+    double size = 1; ///< of a pattern
     double light_share = 1;
     bool smooth = false; ///< some leaf is curved
     std::vector<KeptLeaf> leaves;
@@ -197,7 +200,15 @@ class Baker {
 
     bool textured(const WalkedLeaf& leaf) const {
         return request_.pictures && !leaf.proxy && leaf.material &&
-               !cut_.materials[*leaf.material].texture.empty();
+               cut_.materials[*leaf.material].is_painted();
+    }
+
+    /// Parts of about one size may share a pattern's.
+    double size_of(const WalkedLeaf& leaf) const {
+        if (!textured(leaf) || !cut_.materials[*leaf.material].pattern) return 1;
+        constexpr double grains_an_octave = 8;
+        const double size = part_size(leaf.primitive, leaf.representative_from_leaf.linear);
+        return std::exp2(std::round(std::log2(size) * grains_an_octave) / grains_an_octave);
     }
 
     PartKey key_of(const WalkedLeaf& leaf) const {
@@ -208,6 +219,7 @@ class Baker {
         if (!key.textured) return key;
         const PathTint tint = rounded(leaf.tint, texture_tint_grain);
         key.tint = {tint.premultiplied.r, tint.premultiplied.g, tint.premultiplied.b, tint.alpha};
+        key.size = size_of(leaf);
         return key;
     }
 
@@ -215,6 +227,7 @@ class Baker {
         parts_.push_back({.material = leaf.material,
                           .textured = textured(leaf),
                           .tint = rounded(leaf.tint, texture_tint_grain),
+                          .size = size_of(leaf),
                           .light_share = leaf.light_share,
                           .slots = SlotTable(request_.painters.size())});
         if (parts_.size() > 1) return;
@@ -260,8 +273,13 @@ class Baker {
         if (part.mesh.triangles.empty()) return;
         if (part.textured) {
             GRAFTAL_CHECK(request_.painters.size() == 1, "bake: a picture has one painter");
-            baked_.parts.push_back(
-                {part.material, std::move(part.mesh), {{Rgb(1.0)}}, true, part.tint, part.light_share});
+            baked_.parts.push_back({part.material,
+                                    std::move(part.mesh),
+                                    {{Rgb(1.0)}},
+                                    true,
+                                    part.tint,
+                                    part.size,
+                                    part.light_share});
             return;
         }
         part.mesh.slot_count = part.slots.slot_count();
@@ -270,8 +288,13 @@ class Baker {
             for (const std::uint32_t leaf : part.leaf_of_triangle)
                 part.mesh.slot_of_triangle.push_back(part.slots.slot_of(leaf));
         }
-        baked_.parts.push_back(
-            {part.material, std::move(part.mesh), part.slots.take_palettes(), false, {}, part.light_share});
+        baked_.parts.push_back({part.material,
+                                std::move(part.mesh),
+                                part.slots.take_palettes(),
+                                false,
+                                {},
+                                1,
+                                part.light_share});
     }
 
     int fineness(const Primitive& primitive, const KeptLeaf& leaf) {

@@ -49,8 +49,9 @@ struct BakedPart {
     std::optional<MaterialId> material;
     Mesh mesh;
     std::vector<Palette> palettes; ///< by painter
-    bool textured = false;         ///< by the material's picture, behind this tint; requires one painter
+    bool textured = false; ///< by the material's picture or pattern, behind this tint; requires one painter
     PathTint tint;
+    double size = 1;        ///< of a pattern: about part_size() in the representative's frame
     double light_share = 1; ///< share of the light on it (self_shadow.h)
 };
 

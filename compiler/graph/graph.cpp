@@ -74,7 +74,7 @@ Interior interior_of(const Material& material) {
 
 bool Material::operator==(const Material& other) const {
     return name == other.name && rgb == other.rgb && same_finish(*this, other) && texture == other.texture &&
-           around == other.around && coverage == other.coverage;
+           around == other.around && coverage == other.coverage && pattern == other.pattern;
 }
 
 ObjectId Graph::add(Object object) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/graph/pattern.h"
 #include "compiler/support/affine.h"
 #include "compiler/support/number_range.h"
 #include "compiler/support/source.h"
@@ -38,13 +39,16 @@ struct Material {
     /// the file it is read from or the model it is drawn from; empty: none. Where its alpha is below 1/2
     /// there is no surface.
     std::string texture;
-    double around = 1;   ///< how often it goes round what is round
-    double coverage = 1; ///< share of the picture that is not clear
+    double around = 1;    ///< how often it goes round what is round
+    double coverage = 1;  ///< share of the picture that is not clear
+    SolidPattern pattern; ///< not of one with a picture
     Span span;
 
     /// Spans do not count.
     bool operator==(const Material& other) const;
 
+    /// Whether its colour depends on the place on the surface.
+    bool is_painted() const { return !texture.empty() || pattern; }
     bool is_transparent() const { return transparency > 0; }
     /// The share of its colour that the surface gives to light on its way through; 0 where the inside
     /// absorbs.

@@ -50,7 +50,27 @@ class Printer {
             out_ += "  texture: \"" + material.texture + "\"\n";
             print_numbers("  around", {material.around});
         }
+        print_pattern(material.pattern);
         out_ += "}\n\n";
+    }
+
+    void print_pattern(const SolidPattern& pattern) {
+        for (const PatternLayer& layer : pattern.layers) {
+            const bool first = &layer == &pattern.layers.front();
+            out_ += first ? "  pattern: " : "  plus: ";
+            out_ += pattern_words()[static_cast<std::size_t>(layer.kind)];
+            out_ += '\n';
+            print_numbers("  scale", {layer.scale});
+            print_vector("  stretch", layer.stretch);
+            print_numbers("  octaves", {static_cast<double>(layer.octaves)});
+            print_numbers("  warp", {layer.warp});
+            if (layer.of_world) out_ += "  space: world\n";
+            if (!first) print_numbers("  share", {layer.share});
+        }
+        if (!pattern) return;
+        print_vector("  low", pattern.low);
+        print_vector("  high", pattern.high);
+        print_numbers("  bump", {pattern.bump});
     }
 
     void print_settings() {

@@ -180,6 +180,7 @@ class Verifier {
                                      return std::isfinite(material.*row.value);
                                  });
             if (!numbers) flaw(graph_.root, "material '{}' has a number that is not finite", material.name);
+            check_pattern(material);
             if (material.metallic > 0 && material.has_coat())
                 flaw(graph_.root, "material '{}' is a metal with an index of refraction", material.name);
             if (material.absorption > 0 && !material.is_transparent())
@@ -189,6 +190,23 @@ class Verifier {
             if (material.blur > 0 && !material.is_blurred())
                 flaw(graph_.root, "material '{}' has nothing to blur", material.name);
         }
+    }
+
+    void check_pattern(const Material& material) {
+        const SolidPattern& pattern = material.pattern;
+        if (!pattern) return;
+        if (!material.texture.empty())
+            flaw(graph_.root, "material '{}' has a pattern and a picture", material.name);
+        bool sound = pattern.layers.size() <= SolidPattern::most_layers &&
+                     all_finite(pattern.low, pattern.high, pattern.bump);
+        for (const PatternLayer& layer : pattern.layers) {
+            const bool first = &layer == &pattern.layers.front();
+            sound = sound && all_finite(layer.stretch, layer.warp, layer.scale) && layer.scale > 0 &&
+                    layer.share > 0 && (first ? layer.share == 1 : layer.share < 1) && layer.octaves >= 1 &&
+                    layer.octaves <= SolidPattern::most_octaves &&
+                    std::min({layer.stretch.x, layer.stretch.y, layer.stretch.z}) > 0;
+        }
+        if (!sound) flaw(graph_.root, "material '{}' has a pattern that is none", material.name);
     }
 
     void check_settings() {

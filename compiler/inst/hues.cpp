@@ -69,7 +69,7 @@ class HueStates {
 
     bool is_coloured(const std::optional<MaterialId>& material) const {
         return material &&
-               (!is_grey(source_.materials[*material].rgb) || !source_.materials[*material].texture.empty());
+               (!is_grey(source_.materials[*material].rgb) || source_.materials[*material].is_painted());
     }
 
     bool is_coloured(const Instance& instance) const {
@@ -164,7 +164,8 @@ class HueStates {
         const auto [known, fresh] = materials_.try_emplace({*material, turn}, 0);
         if (fresh) {
             Material copy = source;
-            copy.rgb = hue_turned(copy.rgb, turn.turns());
+            for (Rgb* rgb : {&copy.rgb, &copy.pattern.low, &copy.pattern.high})
+                *rgb = hue_turned(*rgb, turn.turns());
             copy.name = free_variant_name(copy.name, "hue", material_names_, numbers_);
             known->second = static_cast<MaterialId>(graph_.materials.size());
             graph_.materials.push_back(std::move(copy));

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/lower/lower_light.h"
+#include "compiler/lower/lower_pattern.h"
 #include "compiler/lower/named_materials.h"
 #include "compiler/lower/scene_fields.h"
 #include "compiler/support/number.h"
@@ -167,6 +168,7 @@ Material lower_material(const SceneFields& fields, const SceneStatement& stateme
     material.rgb = fields.color("color").value_or(material.rgb);
     lower_finish(fields, material);
     lower_texture(fields, lowering, material);
+    lower_pattern(fields, lowering.diagnostics, material);
     return material;
 }
 

@@ -41,6 +41,7 @@ class SceneFields {
         return found == statement_.fields.end() ? nullptr : &*found;
     }
 
+    const Environment& lets() const { return lets_; }
     bool empty() const { return statement_.fields.empty(); }
     /// False if an error lost a part of the statement, which may be what is missed.
     bool complete() const { return statement_.complete; }

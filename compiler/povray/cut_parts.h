@@ -22,11 +22,12 @@ struct Body {
 
 /// Placements that share a texture: a palette, one tint in front of it, and a finish (the material's rgb is
 /// already in the palette). Where the palette has one colour the tint is already in it too. If the material
-/// has a picture it stands in the palette's place, behind the tint.
+/// has a picture or a pattern it stands in the palette's place, behind the tint.
 struct PlacementGroup {
     std::uint32_t palette = 0;
     PathTint tint;
     Material material;
+    double pattern_size = 1; ///< where the material has a pattern
     std::vector<Placement> placements;
     std::vector<PackedPlacements> packed; ///< more placements
 };

@@ -53,7 +53,11 @@ const std::vector<FieldRule>& rules(Kind kind) {
         {"translucency", Shape::number}, {"emission", Shape::number},   {"texture", Shape::text},
         {"around", Shape::number},       {"metallic", Shape::number},   {"transparency", Shape::number},
         {"ior", Shape::number},          {"absorption", Shape::number}, {"from", Shape::name},
-        {"blur", Shape::number},         {"filter", Shape::number}};
+        {"blur", Shape::number},         {"filter", Shape::number},     {"pattern", Shape::name},
+        {"scale", Shape::number},        {"octaves", Shape::number},    {"stretch", Shape::vector},
+        {"warp", Shape::number},         {"space", Shape::name},        {"plus", Shape::name},
+        {"share", Shape::number},        {"low", Shape::color},         {"high", Shape::color},
+        {"bump", Shape::number}};
     static const std::vector<FieldRule> none;
     switch (kind) {
     case Kind::camera:
@@ -75,6 +79,12 @@ const std::vector<FieldRule>& rules(Kind kind) {
     default:
         return none;
     }
+}
+
+bool is_layer_field(std::string_view keyword) {
+    static constexpr std::string_view words[] = {"plus", "scale", "octaves", "stretch",
+                                                 "warp", "space", "share"};
+    return std::ranges::find(words, keyword) != std::end(words);
 }
 
 std::optional<Kind> kind_of(const Token& token) {
@@ -263,7 +273,8 @@ class StatementParser {
     /// `written`: what the text has in place of the keyword.
     bool parse_value(std::string_view keyword, Span span, Shape shape, std::string_view written) {
         SceneField field;
-        field.keyword = keyword;
+        if (keyword == "plus" && statement_.kind == Kind::material) ++layer_;
+        field.keyword = layer_ > 0 && is_layer_field(keyword) ? layer_field(keyword, layer_) : keyword;
         field.span = span;
         const std::string what = fmt::format("'{}'", written);
         std::optional<std::vector<Expression>> values(std::in_place);
@@ -312,9 +323,14 @@ class StatementParser {
 
     TokenStream& stream_;
     SceneStatement& statement_;
+    std::size_t layer_ = 0; ///< of a material's pattern
 };
 
 } // namespace
+
+std::string layer_field(std::string_view keyword, std::size_t layer) {
+    return layer == 0 ? std::string(keyword) : fmt::format("{} {}", keyword, layer);
+}
 
 const std::vector<std::string>& scene_keywords() {
     static const std::vector<std::string> keywords = {"camera",   "light", "background", "ground",

@@ -44,6 +44,10 @@ struct SceneStatement {
     bool complete = true; ///< false if an error lost a part of it
 };
 
+/// The keyword of a field of a material's layer, such as "scale 2": those after the second `plus` belong to
+/// the layer 2.
+std::string layer_field(std::string_view keyword, std::size_t layer);
+
 /// The words that begin scene statements, for suggestions.
 const std::vector<std::string>& scene_keywords();
 

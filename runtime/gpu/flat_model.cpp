@@ -159,6 +159,10 @@ class Flattener {
 /// Parts of the model that no array of the kernel holds.
 std::string lack(const FlatRequest& request) {
     if (request.textures.of_ground) return "a picture on the ground";
+    const auto has_pattern = [](const Material& material) { return bool(material.pattern); };
+    if (std::ranges::any_of(request.prepared.cut.materials, has_pattern) ||
+        (request.view.ground && has_pattern(request.view.ground->material)))
+        return "a solid pattern";
     for (const CutNode& node : request.prepared.cut.nodes) {
         if (node.unbounded) return "an endless plane";
         if (node.sealed) return "a singular map";

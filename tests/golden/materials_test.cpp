@@ -96,5 +96,38 @@ TEST_F(Materials, BlurIsDrawnByTheNativeEngineAlone) {
     EXPECT_EQ(compare_images(picture("p.png"), picture("d.png"), 2.0 / 255).over_threshold, 0);
 }
 
+/// Both engines compute solid patterns, on parts of several sizes and on the ground. A control: without a
+/// pattern the picture is another one.
+TEST_F(Materials, PatternsLookAlikeInBothEngines) {
+    const auto model = [](const std::string& pattern) {
+        return "material a { color: 0.5, 0.4, 0.3 " + pattern + " }\n" +
+               "material soil { color: 0.3, 0.25, 0.2 " + pattern + " }\n" + R"(
+            canonical object twig { sphere scale: 0.25 translate: 0, 1.4, 0 material a tint: 0, 0.4, 0, 0.3 }
+            object o {
+                sphere translate: -1.2, 0.2, 0 material a
+                cylinder scale: 0.4, 1, 0.4 rotate: z, 20 translate: 1, 0.2, 0 material a
+                twig
+            }
+            ground { height: -0.8 material: soil }
+            camera { location: 0, 2, 6 look_at: 0, 0.1, 0 angle: 40 }
+            light { sun: -1, 2, 2 }
+        )";
+    };
+    write("plain.inst", model(""));
+    const std::string words = " --plain-light --antialias 3 --size 120x80";
+    for (const std::string pattern :
+         {"pattern: noise scale: 1.2 octaves: 2", "pattern: ridges scale: 1 octaves: 2 warp: 0.5",
+          "pattern: cells scale: 1.5 octaves: 1 warp: 0.5 plus: bands scale: 1 octaves: 1 share: 0.4",
+          "pattern: rings scale: 0.8 octaves: 1 space: world stretch: 1, 1, 2",
+          "pattern: noise scale: 1.5 octaves: 1 bump: 2 low: 0.5, 0.4, 0.3 high: 0.5, 0.4, 0.3"}) {
+        SCOPED_TRACE(pattern);
+        write("m.inst", model(pattern));
+        const ImageDifference engines = engines_differ("m.inst" + words, 0.1);
+        EXPECT_LT(engines.mean, 2.5 / 255);
+        ASSERT_EQ(graftal("render plain.inst -q --engine native -o plain.png" + words).status, 0);
+        EXPECT_GT(compare_images(picture("native.png"), picture("plain.png"), 0.1).mean, 4 * engines.mean);
+    }
+}
+
 } // namespace
 } // namespace graftal

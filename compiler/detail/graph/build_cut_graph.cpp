@@ -190,7 +190,7 @@ void weigh_by_reach(CutGraph& cut) {
 void mark_textured(CutGraph& cut) {
     const std::vector<NodeId> order = masters_first(cut);
     const auto has_picture = [&](const std::optional<MaterialId>& material) {
-        return material && !cut.materials[*material].texture.empty();
+        return material && cut.materials[*material].is_painted();
     };
     const auto shows_picture = [&](const CutEdge& edge) {
         return cut.nodes[edge.child].textured || has_picture(edge.material);

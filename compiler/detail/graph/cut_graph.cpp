@@ -49,7 +49,7 @@ std::optional<MaterialId> most_seen(std::span<const double> shares, const std::v
     const auto most = static_cast<std::size_t>(std::ranges::max_element(shares) - shares.begin());
     if (most == materials.size()) return {};
     const Material& material = materials[most];
-    if (!material.texture.empty() || material.is_transparent()) return {};
+    if (material.is_painted() || material.is_transparent()) return {};
     return static_cast<MaterialId>(most);
 }
 

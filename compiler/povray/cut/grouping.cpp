@@ -13,6 +13,8 @@
 #include "compiler/analysis/bounding.h"
 #include "compiler/detail/bake.h"
 #include "compiler/detail/mesh/builder.h"
+#include "compiler/primitives/part_size.h"
+#include "compiler/support/stretch.h"
 
 namespace graftal {
 
@@ -27,7 +29,8 @@ std::string body_name(const Primitive& primitive) {
 constexpr double tint_grain = 1.0 / (1 << 24);
 
 bool share_finish(const Material& a, const Material& b) {
-    return same_finish(a, b) && a.texture == b.texture && interior_of(a) == interior_of(b);
+    return same_finish(a, b) && a.texture == b.texture && a.pattern == b.pattern &&
+           (!a.pattern || a.rgb == b.rgb) && interior_of(a) == interior_of(b);
 }
 
 } // namespace
@@ -59,7 +62,8 @@ void Grouping::add(const Placed& thing) {
         const Affine world_from_body = thing.world_from_thing * baked.representative_from_body;
         const Finish finish{baked.parts[p].material, thing.light_share * baked.parts[p].light_share};
         if (baked.parts[p].textured)
-            place_picture(body, world_from_body, thing.tint * baked.parts[p].tint, finish);
+            place_painted(body, world_from_body, thing.tint * baked.parts[p].tint, finish,
+                          baked.parts[p].size * norm(thing.world_from_thing.linear));
         else if (palette.size() == 1)
             place(body, world_from_body, colour(thing.tint.over(palette[0])), {}, finish);
         else
@@ -114,13 +118,16 @@ void Grouping::add_textured_body(const TexturedPrimitive& shape) {
 }
 
 void Grouping::add_textured(const Placed& thing) {
-    place_picture(*thing.textured, thing.world_from_thing, thing.tint, {thing.material, thing.light_share});
+    place_painted(*thing.textured, thing.world_from_thing, thing.tint, {thing.material, thing.light_share},
+                  part_size(thing.painted, thing.world_from_thing.linear));
     include(transformed(thing.world_from_thing, box_[*thing.textured]));
 }
 
-void Grouping::place_picture(std::uint32_t body, const Affine& world_from_body, const PathTint& tint,
-                             const Finish& finish) {
-    group_of(colour(Rgb(1.0)), rounded(tint, texture_tint_grain), material_of(finish))
+void Grouping::place_painted(std::uint32_t body, const Affine& world_from_body, const PathTint& tint,
+                             const Finish& finish, double size) {
+    const Material material = material_of(finish);
+    group_of(colour(Rgb(1.0)), rounded(tint, texture_tint_grain), material,
+             material.pattern ? pattern_size(size) : 1)
         .placements.push_back({body, world_from_body});
     ++result_.placement_count;
 }
@@ -149,8 +156,9 @@ void Grouping::place(std::uint32_t body, const Affine& world_from_body, std::uin
 
 PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& exact_tint, const Finish& finish) {
     Material material = material_of(finish);
-    material.texture.clear(); // pictures are placed by place_picture()
-    return group_of(palette, rounded(exact_tint, tint_grain), material);
+    material.texture.clear(); // place_painted() places those that have one
+    material.pattern = {};
+    return group_of(palette, rounded(exact_tint, tint_grain), material, 1);
 }
 
 Material Grouping::material_of(const Finish& finish) const {
@@ -162,7 +170,8 @@ Material Grouping::material_of(const Finish& finish) const {
     return material;
 }
 
-PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& tint, const Material& finish) {
+PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& tint, const Material& finish,
+                                   double size) {
     std::uint64_t hash = mixed(0, palette);
     const auto mix = [&](double number) { hash = mixed(hash, std::bit_cast<std::uint64_t>(number)); };
     for (int c = 0; c < 3; ++c)
@@ -170,13 +179,15 @@ PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& tint, 
     mix(tint.alpha);
     for (const FinishNumber& row : finish_numbers)
         mix(finish.*row.value);
+    mix(size);
     hash = mixed(hash, std::hash<std::string>()(finish.texture));
     const auto next = static_cast<std::uint32_t>(result_.groups.size());
     const std::uint32_t id = group_ids_.find_or_add(hash, next, [&](std::uint32_t other) {
         const PlacementGroup& group = result_.groups[other];
-        return group.palette == palette && group.tint == tint && share_finish(group.material, finish);
+        return group.palette == palette && group.tint == tint && group.pattern_size == size &&
+               share_finish(group.material, finish);
     });
-    if (id == next) result_.groups.push_back({palette, tint, finish, {}, {}});
+    if (id == next) result_.groups.push_back({palette, tint, finish, size, {}, {}});
     return result_.groups[id];
 }
 

@@ -37,15 +37,17 @@ class Grouping {
     void include(const Box& box);
     void add_textured_body(const TexturedPrimitive& shape);
     void add_textured(const Placed& thing);
-    void place_picture(std::uint32_t body, const Affine& world_from_body, const PathTint& tint,
-                       const Finish& finish);
+    /// Places what has a picture or a pattern. `size`: part_size().
+    void place_painted(std::uint32_t body, const Affine& world_from_body, const PathTint& tint,
+                       const Finish& finish, double size);
     Material material_of(const Finish& finish) const;
     void add_primitive(const Placed& thing);
     std::uint32_t body_of(const Primitive& primitive);
     void place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette,
                const PathTint& exact_tint, const Finish& finish);
     PlacementGroup& group_of(std::uint32_t palette, const PathTint& exact_tint, const Finish& finish);
-    PlacementGroup& group_of(std::uint32_t palette, const PathTint& tint, const Material& finish);
+    PlacementGroup& group_of(std::uint32_t palette, const PathTint& tint, const Material& finish,
+                             double size);
     std::uint32_t colour(const Rgb& rgb);
     std::uint32_t palette_id(std::uint32_t request, std::uint32_t part, std::uint32_t painter);
 

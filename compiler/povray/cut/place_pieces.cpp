@@ -199,6 +199,7 @@ class Placing {
         if (!seen_.insert(2 * out_.primitives.of(primitive), thing.world_from_thing)) return;
         note_finest(ball);
         thing.textured = place->second;
+        thing.painted = primitive;
         thing.tint = piece.tint;
         thing.material = piece.material;
         thing.light_share = piece.light_share;
@@ -277,7 +278,7 @@ class Placing {
         return true;
     }
 
-    bool has_picture(MaterialId material) const { return !cut_.materials[material].texture.empty(); }
+    bool has_picture(MaterialId material) const { return cut_.materials[material].is_painted(); }
 
     void note_finest(const Ball& ball) {
         if (projection_.culls() && projection_.sees(ball))

@@ -30,8 +30,9 @@ struct Placed {
     PathTint tint;               ///< of a mesh
     Rgb rgb{0.8};                ///< of a primitive, tints in front
     std::optional<MaterialId> material;
-    double light_share = 1;                ///< Piece's
-    std::optional<std::uint32_t> textured; ///< one of the primitives with pictures
+    double light_share = 1;                    ///< Piece's
+    std::optional<std::uint32_t> textured;     ///< one of the primitives with pictures or patterns
+    Primitive painted = PrimitiveKind::sphere; ///< then: this
 };
 
 /// A primitive as a mesh with a picture round it.

@@ -47,7 +47,7 @@ class Digests {
 bool PlacedRuns::can_hold(const CutGraph& cut, const Piece& piece) {
     const CutNode& node = cut.nodes[piece.node];
     if (!node.cell || node.textured || node.widens || piece.faint) return false;
-    if (piece.material && !cut.materials[*piece.material].texture.empty()) return false;
+    if (piece.material && cut.materials[*piece.material].is_painted()) return false;
     const Vec3 sigma = singular_values(piece.world_from_node.linear);
     return sigma.z * node.cell->flattest > flattest_placement * sigma.x;
 }

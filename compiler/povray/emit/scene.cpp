@@ -69,7 +69,7 @@ class Emitter {
         : cut_(cut), options_(options), units_(units), out_(sink),
           identifier_(options.identifier.empty() ? model_identifier(options.scene_name) : options.identifier),
           prefix_(options.include ? identifier_ + "_" : ""), bodies_(cut, prefix_),
-          textures_(cut, prefix_, picture_stem(options), options.include),
+          textures_(cut, units, prefix_, picture_stem(options), options.include),
           progress_(out_, cut.placement_count + bodies_.triangle_count(), options.progress) {
         sort_into_buckets();
     }

@@ -70,8 +70,6 @@ std::string clearness(const Material& m) {
     return text;
 }
 
-constexpr std::string_view clear_texture = "texture { pigment { rgbt 1 } finish { ";
-
 std::string colour_text(Rgb rgb, const std::string& clear) {
     std::string text;
     append_rgb(text, rgb);
@@ -89,18 +87,20 @@ void begin_texture(std::string& text) {
     text += "texture { pigment { ";
 }
 
-void end_texture(std::string& text, const std::string& finish) {
-    text += " } finish { ";
+void end_texture(std::string& text, const std::string& finish, std::string_view normal = {}) {
+    text += " }";
+    text += normal;
+    text += " finish { ";
     text += finish;
     text += " } }";
 }
 
 } // namespace
 
-PovrayTextures::PovrayTextures(const Cut& cut, const std::string& prefix, std::string file_stem,
-                               bool by_material)
+PovrayTextures::PovrayTextures(const Cut& cut, const PovrayUnits& units, const std::string& prefix,
+                               std::string file_stem, bool by_material)
     : cut_(cut), prefix_(prefix), file_stem_(std::move(file_stem)), finish_names_(prefix + "F_"),
-      by_material_(by_material) {}
+      patterns_(prefix, units), by_material_(by_material) {}
 
 std::string PovrayTextures::name_of(const Material& material) {
     return material.name.empty() ? "default" : material.name;
@@ -141,14 +141,28 @@ void PovrayTextures::append_plain(std::string& text, Rgb rgb, const Material& ma
 }
 
 /// One layer, and above it a clear one that reflects if there is a coat.
-void PovrayTextures::append_surface(std::string& text, std::string_view pigment, const Material& material) {
+void PovrayTextures::append_surface(std::string& text, std::string_view pigment, const Material& material,
+                                    std::string_view normal) {
     begin_texture(text);
     text += pigment;
-    end_texture(text, finish(material, material.has_coat() ? Layer::matt : Layer::whole));
+    end_texture(text, finish(material, material.has_coat() ? Layer::matt : Layer::whole), normal);
     if (!material.has_coat()) return;
-    text += "\n          ";
-    text += clear_texture;
-    text += finish(material, Layer::coat) + " } }";
+    text += "\n          texture { pigment { rgbt 1";
+    end_texture(text, finish(material, Layer::coat), normal);
+}
+
+/// Colours of a pattern behind a tint, and its relief.
+void PovrayTextures::append_pattern(std::string& text, const Material& material, const PathTint& tint,
+                                    double size) {
+    const std::string clear = clearness(material);
+    const auto entry = [&](const char* value, Rgb rgb) {
+        return fmt::format(" [{} {}]", value, colour_text(tint.over(rgb), clear));
+    };
+    append_surface(text,
+                   fmt::format("function {{ {} }} color_map {{{}{}{} }}",
+                               patterns_.value(material.pattern, size), entry("0", material.pattern.low),
+                               entry("0.5", material.rgb), entry("1", material.pattern.high)),
+                   material, patterns_.relief(material.pattern, size));
 }
 
 std::string PovrayTextures::plain(Rgb rgb, const Material& material) {
@@ -210,6 +224,11 @@ void PovrayTextures::append_shape(std::string& text, std::string_view pattern, s
 }
 
 std::string PovrayTextures::ground(const Material& material, const Affine& pov_from_picture) {
+    if (material.pattern) {
+        std::string text;
+        append_pattern(text, material, {}, 1);
+        return text;
+    }
     if (material.texture.empty()) return plain(material.rgb, material);
     std::string place = " matrix <";
     constexpr int place_digits = 12;
@@ -254,7 +273,9 @@ std::uint32_t PovrayTextures::texture_of(const PlacementGroup& group) {
     GRAFTAL_CHECK(group.palette < cut_.palettes.size() && !cut_.palettes[group.palette].empty(),
                   "emit_povray: a group without colours");
     text_.clear();
-    if (group.material.texture.empty())
+    if (group.material.pattern)
+        append_pattern(text_, group.material, group.tint, group.pattern_size);
+    else if (group.material.texture.empty())
         append_layered(text_, group);
     else
         append_picture(text_, group);
@@ -327,7 +348,7 @@ std::string PovrayTextures::declarations(std::vector<PaletteImage>& pictures) co
     }
     for (const auto& [layers, name] : layers_)
         text += fmt::format("#declare {} = {}\n", name, layers);
-    return text;
+    return text + patterns_.declarations();
 }
 
 } // namespace graftal

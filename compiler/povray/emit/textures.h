@@ -13,6 +13,7 @@
 
 #include "compiler/povray/cut_parts.h"
 #include "compiler/povray/emit/names.h"
+#include "compiler/povray/emit/patterns.h"
 #include "compiler/povray/output.h"
 #include "compiler/support/id_table.h"
 
@@ -25,7 +26,8 @@ class PovrayTextures {
   public:
     /// `prefix` begins every name; `file_stem` the names of pictures. `by_material`: looks of different
     /// materials are different though they are equal.
-    PovrayTextures(const Cut& cut, const std::string& prefix, std::string file_stem, bool by_material);
+    PovrayTextures(const Cut& cut, const PovrayUnits& units, const std::string& prefix, std::string file_stem,
+                   bool by_material);
 
     /// Texture of the group's primitives and meshes: an index into all(). Equal looks have equal indices.
     std::uint32_t texture_of(const PlacementGroup& group);
@@ -63,8 +65,10 @@ class PovrayTextures {
 
     void append_layered(std::string& text, const PlacementGroup& group);
     void append_picture(std::string& text, const PlacementGroup& group);
+    void append_pattern(std::string& text, const Material& material, const PathTint& tint, double size);
     void append_plain(std::string& text, Rgb rgb, const Material& material);
-    void append_surface(std::string& text, std::string_view pigment, const Material& material);
+    void append_surface(std::string& text, std::string_view pigment, const Material& material,
+                        std::string_view normal = {});
     void append_shape(std::string& text, std::string_view pattern, std::string_view pigment,
                       const Material& material);
     const std::string& finish(const Material& material, Layer layer);
@@ -88,6 +92,7 @@ class PovrayTextures {
     };
     std::map<std::pair<std::string, std::string>, Picture> pictures_; ///< likewise, by Material::texture
     std::map<std::string, std::string> layers_;                       ///< by their text
+    PovrayPatterns patterns_;
     FinishNames last_finish_;
     bool by_material_;
     std::deque<std::string> textures_;

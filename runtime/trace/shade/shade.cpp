@@ -1,4 +1,5 @@
 #include "runtime/trace/shade/shade.h"
+#include "runtime/trace/shade/patterns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include "compiler/support/axes_across.h"
 #include "compiler/support/number_range.h"
 #include "runtime/trace/shade/formulas.h"
+#include "runtime/trace/shade/patterns.h"
 #include "runtime/trace/shade/point.h"
 
 namespace graftal {
@@ -289,6 +291,16 @@ bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit, const Know
     double t = 0;
     if (!meet_ground(ray, range, t)) return found;
     hit = {t, {0, 1, 0}, view_.ground->material.rgb, &view_.ground->material};
+    if (view_.ground->material.pattern) {
+        const Material& material = view_.ground->material;
+        const Vec3 place = ray(t);
+        // A pixel that looks along the ground sees a long piece of it.
+        const double footprint = least_distance(place, 1) / std::max(std::abs(ray.direction.y), 1e-3);
+        const PatternValue at = pattern_at(material.pattern, 1, footprint, place);
+        hit.rgb = pattern_colour(material.pattern, material.rgb, at.value);
+        if (ray.direction.y > 0) hit.normal = -hit.normal;
+        hit.normal = bumped(hit.normal, at.relief, material.pattern.bump, ray.direction);
+    }
     if (ground_texture_) {
         const auto& srgb = ground_texel(ray(t)).srgb;
         hit.rgb = {srgb_decoded(srgb[0]), srgb_decoded(srgb[1]), srgb_decoded(srgb[2])};

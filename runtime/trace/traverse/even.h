@@ -259,8 +259,8 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
             self.best_.turns = model.edges[edge].turns;
         }
         self.best_.proxy_node = no_edge;
-        self.best_.is_upright = part.upright;
-        if (!part.upright) {
+        self.best_.is_upright = part.upright && !self.packet_->has_patterns;
+        if (!self.best_.is_upright) {
             place_frames(number);
             place(parent, model.edges[edge].parent_from_child, self.best_.world_from_leaf);
         }

@@ -176,8 +176,8 @@ struct Traversal::EvenPacket
         if (!this->keep_crossings(near, crossing, going.mask)) return;
         PacketRoom::Hit& hit = room.hits.back();
         const Frame& parent = frames[going.frame];
-        hit.is_upright = part.upright;
-        if (!part.upright) this->place(parent, edge.parent_from_child, hit.world_from_leaf);
+        hit.is_upright = part.upright && !room.has_patterns;
+        if (!hit.is_upright) this->place(parent, edge.parent_from_child, hit.world_from_leaf);
         if (room.has_textures) hit.turns = edge.turns;
         this->prefetch_look(going.entry);
         this->keep_way(going.frame, hit);

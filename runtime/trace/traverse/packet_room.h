@@ -64,6 +64,7 @@ struct Traversal::PacketRoom {
     };
 
     bool has_textures = false; ///< then what is seen depends on where a part is met
+    bool has_patterns = false; ///< likewise
     std::vector<EvenFrame> even_frames;
     std::vector<Frame> frames; ///< either these or those
     std::vector<Entry> entries = std::vector<Entry>(128);

@@ -108,7 +108,7 @@ void Traversal::show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceH
     const auto way = packet_->ways.begin();
     way_.assign(way + static_cast<std::ptrdiff_t>(met.way), way + static_cast<std::ptrdiff_t>(met.way_end));
     show_best(hits[lane]);
-    if (met.proxy_node == no_edge && !packet_->has_textures) met.shown = lane;
+    if (met.proxy_node == no_edge && !packet_->has_textures && !packet_->has_patterns) met.shown = lane;
 }
 
 } // namespace graftal

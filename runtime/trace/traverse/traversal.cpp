@@ -5,9 +5,11 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/primitives/part_size.h"
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
 #include "runtime/trace/model/surface_normal.h"
+#include "runtime/trace/shade/patterns.h"
 #include "runtime/trace/traverse/even.h"
 #include "runtime/trace/traverse/kernel.h"
 #include "runtime/trace/traverse/leaves.h"
@@ -58,6 +60,8 @@ Traversal::Traversal(const TraceModel& model, Instructions instructions)
         packet_->frames.resize(16);
     packet_->has_textures = std::ranges::any_of(model.textures.of_material,
                                                 [](const auto& texture) { return texture != nullptr; });
+    packet_->has_patterns = std::ranges::any_of(
+        model.prepared.cut.materials, [](const Material& material) { return bool(material.pattern); });
 }
 
 Traversal::~Traversal() = default;
@@ -263,9 +267,26 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
         if (stands_for.finish) hit.material = &materials[*stands_for.finish];
     }
     hit.t = best_.t;
-    hit.rgb = tint.over(inherited);
     hit.normal = normal_at_best();
     hit.light_share = light_share_at_best();
+    if (best_.proxy_node == no_edge && !best_.mesh_colour && hit.material->pattern) {
+        const Primitive& primitive = model_.nodes[model_.edges[way_.back() & ~from_cut].child].primitive;
+        const double size = part_size(primitive, best_.world_from_leaf.affine().linear);
+        inherited = pattern_at_best(*hit.material, pattern_size(size), hit.normal);
+    }
+    hit.rgb = tint.over(inherited);
+}
+
+/// The colour that the material's pattern has where the ray meets it. Its relief tilts the normal.
+Rgb Traversal::pattern_at_best(const Material& material, double size, Vec3& normal) const {
+    const Vec3 place = ray_(best_.t);
+    const PatternValue at =
+        pattern_at(material.pattern, size, 1 / model_.projection.pixels_per_unit({place, 0}), place);
+    if (material.pattern.bump != 0) {
+        if (glm::dot(normal, ray_.direction) > 0) normal = -normal;
+        normal = bumped(normal, at.relief, material.pattern.bump, glm::normalize(ray_.direction));
+    }
+    return pattern_colour(material.pattern, material.rgb, at.value);
 }
 
 } // namespace graftal

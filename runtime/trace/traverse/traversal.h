@@ -258,6 +258,7 @@ class Traversal final : public Surfaces {
     void look_along(std::uint32_t step, WayLook& look, SurfaceHit& hit) const;
     void surface_at_best(SurfaceHit& hit) const;
     Vec3 normal_at_best() const;
+    Rgb pattern_at_best(const Material& material, double size, Vec3& normal) const;
     double light_share_at_best() const;
     /// The material that an edge gives, the nearest to its child if it stands for several.
     std::optional<MaterialId> material_of(std::uint32_t edge) const;

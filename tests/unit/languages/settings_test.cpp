@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "compiler/graph/print.h"
 #include "compiler/languages/lower.h"
 #include "compiler/lower/named_materials.h"
 
@@ -170,6 +171,58 @@ TEST(Settings, angles_just_inside_the_range_are_good) {
     EXPECT_TRUE(Model("steps: 1000000000").graph);
     EXPECT_FALSE(Model("steps: 1000000001").graph);
     EXPECT_TRUE(Model("steps: 0").graph);
+}
+
+TEST(Settings, APatternHasLayersAndColours) {
+    const Model model(
+        "material rock { color: 0.4, 0.4, 0.2  pattern: cells  scale: 2  warp: 1  space: world\n"
+        "  plus: noise  scale: 0.3  octaves: 6  share: 0.25  high: 1, 1, 1  bump: 2 }\n"
+        "material moss { from: rock  color: 0.1, 0.2, 0 }\n"
+        "material bare { from: rock  pattern: none }\n"
+        "object o { sphere material rock }");
+    ASSERT_TRUE(model.graph) << model.errors();
+    const SolidPattern& rock = material_of(model.graph, "rock")->pattern;
+    ASSERT_EQ(rock.layers.size(), 2u);
+    EXPECT_EQ(rock.layers[0],
+              (PatternLayer{.kind = PatternKind::cells, .scale = 2, .of_world = true, .warp = 1}));
+    EXPECT_EQ(rock.layers[1],
+              (PatternLayer{.kind = PatternKind::noise, .scale = 0.3, .octaves = 6, .share = 0.25}));
+    EXPECT_EQ(rock.high, Rgb(1.0));
+    EXPECT_NEAR(rock.low.r, 0.65 * 0.4, 1e-12);
+    EXPECT_EQ(rock.bump, 2);
+    const SolidPattern& moss = material_of(model.graph, "moss")->pattern;
+    EXPECT_EQ(moss.layers, rock.layers);
+    EXPECT_NEAR(moss.high.g, 1.35 * 0.2, 1e-12) << "colours go with the material's";
+    EXPECT_FALSE(material_of(model.graph, "bare")->pattern);
+    // As it is written, it is read.
+    SourceMap sources;
+    Diagnostics diagnostics;
+    const auto again = lower_text("again.inst", print(*model.graph), {}, sources, diagnostics).graph;
+    ASSERT_TRUE(again) << diagnostics.render(sources);
+    EXPECT_EQ(again->materials, model.graph->materials);
+}
+
+TEST(Settings, FaultsOfPatterns) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"pattern: marble", "there is no pattern 'marble'"},
+        {"scale: 2", "'scale' belongs to a pattern, and this material has none"},
+        {"plus: noise", "'plus' belongs to a pattern"},
+        {"pattern: noise octaves: 0", "'octaves' must be a whole number between 1 and 10"},
+        {"pattern: noise octaves: 2.5", "'octaves' must be a whole number"},
+        {"pattern: noise stretch: 0, 1, 1", "each factor of 'stretch' must lie between 0.001 and 1000"},
+        {"pattern: noise scale: 0", "'scale' must be positive"},
+        {"pattern: noise space: room", "there is no space 'room'"},
+        {"pattern: noise share: 0.5", "'share' is that of a pattern on another one"},
+        {"pattern: noise plus: cells share: 1", "must be above 0 and below 1"},
+        {"pattern: noise plus: cells plus: cells plus: bands plus: noise", "a pattern has at most 4 layers"},
+        {"pattern: noise scale: 1 scale: 2", "duplicate 'scale'"},
+        {"pattern: noise bump: 1e9", "must lie between -10 and 10"},
+        {"pattern: noise texture: \"x.png\"", "a material has a picture or a pattern"},
+    };
+    for (const auto& [fields, message] : cases) {
+        const Model model("material m { " + std::string(fields) + " }\nobject o { sphere material m }");
+        EXPECT_THAT(model.errors(), HasSubstr(message)) << fields;
+    }
 }
 
 } // namespace

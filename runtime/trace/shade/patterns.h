@@ -1,0 +1,22 @@
+#pragma once
+
+#include "compiler/graph/pattern.h"
+
+namespace graftal {
+
+/// A solid pattern at a place.
+struct PatternValue {
+    double value = 0.5; ///< in (0, 1)
+    /// Gradient of the relief of bump 1, in lengths per length.
+    Vec3 relief{0.0};
+};
+
+/// `size`: pattern_size() of the part. `footprint`: the length in the world that a sample stands for there.
+/// Requires a pattern with layers.
+PatternValue pattern_at(const SolidPattern& pattern, double size, double footprint, Vec3 world);
+
+/// The unit normal of the surface with its relief, as POV-Ray has it (normal.cpp, Perturb_Normal). `normal`:
+/// of unit length, to the side from where the ray of this direction comes; the result is, too.
+Vec3 bumped(Vec3 normal, Vec3 relief, double bump, Vec3 ray_direction);
+
+} // namespace graftal

@@ -87,6 +87,10 @@ bool is_layer_field(std::string_view keyword) {
     return std::ranges::find(words, keyword) != std::end(words);
 }
 
+bool belongs_to_pattern(std::string_view keyword) {
+    return is_layer_field(keyword) || keyword == "low" || keyword == "high" || keyword == "bump";
+}
+
 std::optional<Kind> kind_of(const Token& token) {
     const std::vector<std::string>& keywords = scene_keywords();
     const auto found = std::find(keywords.begin(), keywords.end(), token.text);
@@ -236,8 +240,10 @@ class StatementParser {
     bool report_unknown(std::string_view statement) {
         const Token word = stream_.peek();
         std::vector<std::string> candidates;
+        const bool patterned =
+            std::ranges::find(statement_.fields, "pattern", &SceneField::keyword) != statement_.fields.end();
         for (const FieldRule& rule : rules(statement_.kind))
-            candidates.emplace_back(rule.keyword);
+            if (patterned || !belongs_to_pattern(rule.keyword)) candidates.emplace_back(rule.keyword);
         if (word.kind != TokenKind::name) {
             Diagnostic& error = stream_.expected(fmt::format("a field of '{}' or '}}'", statement));
             error.with_hint(choices("", candidates));

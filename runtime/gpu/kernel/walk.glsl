@@ -328,7 +328,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 float begin = near;
                 site.kind = kind;
                 vec3 wider = vec3(1.0f);
-                if (frame.faint) {
+                if (frame.faint && kind != KIND_PLANE) {
                     // About its middle, in the frame that it is drawn in.
                     const vec4 ball = nodes(frame.node * NODE_SIZE + NODE_BALL);
                     const vec3 place = place_of(xyz_of(ball), frame, origin, direction);

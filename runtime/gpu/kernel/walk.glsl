@@ -1,9 +1,7 @@
 // Rays through the cyclic graph itself, depth first and the nearest first, into the frame of each part, as deep
 // as the parts are that the view shows (Traversal of runtime/trace does the same in doubles).
 
-/// Frames on the way from the root, and entries for later. A ray that needs more is counted as lost.
-#define MOST_FRAMES 64
-#define MOST_LATER 320
+// MOST_FRAMES lie on the way from the root, and MOST_LATER entries wait. A ray that needs more counts as lost.
 
 struct Hit {
     float t;

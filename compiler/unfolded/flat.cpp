@@ -54,12 +54,12 @@ class Flattening {
     void add_node(NodeId id, double error_px) {
         const CutNode& node = cut_.nodes[id];
         const Affine frame_from_graph = inverse(graph_from_frame_[id]);
-        fits_ = fits_ && !node.unbounded && !node.sealed &&
+        fits_ = fits_ && !node.sealed &&
                 flat_.edges.size() + edge_count(node, false) + node.stop_edges.size() <= most_edges_;
         if (!fits_) return;
         FlatNode flat;
         if (node.primitive) flat.primitive = number_of(*node.primitive);
-        flat.unending = node.unending;
+        flat.unending = node.unending && !node.unbounded;
         flat.terminal = node.terminal;
         flat.faint = node.shadowless;
         flat.widens = node.widens;
@@ -67,7 +67,7 @@ class Flattening {
         const Vec3 centre = frame_from_graph(node.ball.centre);
         for (int axis = 0; axis < 3; ++axis)
             flat.centre[static_cast<std::size_t>(axis)] = static_cast<float>(centre[axis]);
-        if (node.cullable && !node.primitive)
+        if (node.cullable && !node.primitive && !node.unbounded)
             flat.cut_detail = static_cast<float>(cut_detail(node, error_px));
         flat.frame_from_proxy = floats_of(frame_from_graph * node.node_from_proxy);
         flat.mean = Paint(node.mean);
@@ -81,7 +81,8 @@ class Flattening {
                 const Box box = node.cell && !stop
                                     ? box_of_image(*cut_.nodes[edge.child].primitive, edge.node_from_child)
                                     : boxes[next++];
-                add_edge(edge, frame_from_graph, transformed(frame_from_graph, box));
+                add_edge(edge, frame_from_graph,
+                         cut_.nodes[edge.child].unbounded ? endless_ : transformed(frame_from_graph, box));
             });
             (stop ? flat.stop_edge_count : flat.edge_count) =
                 static_cast<std::uint32_t>(flat_.edges.size()) - flat.first_edge - flat.edge_count;
@@ -121,6 +122,8 @@ class Flattening {
     const CutGraph& cut_;
     const DrawnBounds& bounds_;
     const std::size_t most_edges_;
+    static constexpr double half_endless = flat_endless;
+    const Box endless_{Vec3(-half_endless), Vec3(half_endless)};
     FlatGraph flat_;
     std::vector<Affine> graph_from_frame_;
     std::unordered_map<Primitive, std::uint32_t> numbers_;

@@ -26,6 +26,8 @@ struct FloatPair {
 };
 
 inline constexpr std::uint32_t flat_none = UINT32_MAX;
+/// Half the side of the box of what has no end.
+inline constexpr float flat_endless = 1e30f;
 
 struct FlatEdge {
     std::uint32_t child = 0;
@@ -36,7 +38,8 @@ struct FlatEdge {
     Paint tint;
     std::array<FloatPair, 9> child_from_parent; ///< linear part by columns, of points from the child's origin
     std::array<FloatPair, 3> origin;            ///< of the child, in the parent's frame
-    std::array<float, 6> box;                   ///< holds all that the child draws, in the parent's frame
+    std::array<float, 6>
+        box; ///< holds all that the child draws, in the parent's frame; flat_endless or more if it has no end
 };
 
 struct FlatNode {
@@ -44,13 +47,13 @@ struct FlatNode {
     std::uint32_t edge_count = 0;
     std::uint32_t stop_edge_count = 0;   ///< those after: followed where it is cut; none: its proxy is drawn
     std::uint32_t primitive = flat_none; ///< of FlatGraph::primitives; then it has no edges
-    std::uint32_t unending = 0;          ///< 1: cut where no level is left
-    std::uint32_t faint = 0;             ///< CutNode::shadowless
-    std::uint32_t widens = 0;            ///< CutNode::widens
-    std::uint32_t terminal = 0;          ///< 1: below the stop edges, what names no material inherits `mean`
-    std::array<float, 3> centre{};       ///< of the ball that decides how large it is, in its frame
-    float diameter = 0;                  ///< likewise
-    float cut_detail = 0;                ///< detail of the diameter from which down it is cut; 0: never
+    std::uint32_t unending = 0;    ///< 1: cut where no level is left; planes and what holds them never are
+    std::uint32_t faint = 0;       ///< CutNode::shadowless
+    std::uint32_t widens = 0;      ///< CutNode::widens
+    std::uint32_t terminal = 0;    ///< 1: below the stop edges, what names no material inherits `mean`
+    std::array<float, 3> centre{}; ///< of the ball that decides how large it is, in its frame
+    float diameter = 0;            ///< likewise
+    float cut_detail = 0;          ///< detail of the diameter from which down it is cut; 0: never
     std::array<float, 12> frame_from_proxy{}; ///< places the unit sphere: by columns, the translation last
     Paint mean, proxy;                        ///< colours from afar
     std::uint32_t finish = flat_none;         ///< material of the proxy; none: that it inherits
@@ -65,7 +68,7 @@ struct FlatGraph {
 };
 
 /// Nothing where the graph is no input for such an engine: it has more than `most_edges` edges, or some map
-/// leaves no thickness, or a plane has no box. `error_px`: Projection::error_px(). O(edges), those of cells
+/// leaves no thickness. `error_px`: Projection::error_px(). O(edges), those of cells
 /// spelt out.
 std::optional<FlatGraph> flat_graph(const LayeredGraph& layers, const DrawnBounds& bounds, double error_px,
                                     std::size_t most_edges);

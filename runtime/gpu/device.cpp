@@ -157,17 +157,25 @@ struct Gpu::Parts {
     ~Parts() {
         const Api& api = instance.api;
         if (!device) return;
-        api.vkDeviceWaitIdle(device);
-        for (Buffer& buffer : buffers)
-            free(buffer);
+        unload();
         free(stage);
         if (fence) api.vkDestroyFence(device, fence, nullptr);
         if (pool) api.vkDestroyCommandPool(device, pool, nullptr);
-        if (sets) api.vkDestroyDescriptorPool(device, sets, nullptr);
-        if (pipeline) api.vkDestroyPipeline(device, pipeline, nullptr);
-        if (layout) api.vkDestroyPipelineLayout(device, layout, nullptr);
-        if (set_layout) api.vkDestroyDescriptorSetLayout(device, set_layout, nullptr);
         api.vkDestroyDevice(device, nullptr);
+    }
+
+    /// Frees the kernel and its buffers.
+    void unload() {
+        const Api& api = instance.api;
+        api.vkDeviceWaitIdle(device);
+        for (Buffer& buffer : buffers)
+            free(buffer);
+        buffers.clear();
+        // Vulkan destroys null handles, too.
+        api.vkDestroyDescriptorPool(device, std::exchange(sets, VK_NULL_HANDLE), nullptr);
+        api.vkDestroyPipeline(device, std::exchange(pipeline, VK_NULL_HANDLE), nullptr);
+        api.vkDestroyPipelineLayout(device, std::exchange(layout, VK_NULL_HANDLE), nullptr);
+        api.vkDestroyDescriptorSetLayout(device, std::exchange(set_layout, VK_NULL_HANDLE), nullptr);
     }
 
     Status open(VkPhysicalDevice physical) {
@@ -347,7 +355,9 @@ std::unique_ptr<Gpu> Gpu::open(std::size_t number, Status& status) {
     return std::unique_ptr<Gpu>(new Gpu(std::move(parts), std::move(info)));
 }
 
-Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std::uint32_t push_bytes) {
+Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std::uint32_t push_bytes,
+                 std::uint32_t constant) {
+    parts_->unload();
     const Api& api = parts_->instance.api;
     const VkDevice device = parts_->device;
     std::vector<VkDescriptorSetLayoutBinding> bindings;
@@ -380,6 +390,9 @@ Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std:
     of_pipeline.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
     of_pipeline.stage.module = module;
     of_pipeline.stage.pName = "main";
+    const VkSpecializationMapEntry entry{0, 0, sizeof(constant)};
+    const VkSpecializationInfo constants{1, &entry, sizeof(constant), &constant};
+    of_pipeline.stage.pSpecializationInfo = &constants;
     of_pipeline.layout = parts_->layout;
     if (result == VK_SUCCESS)
         result =

@@ -90,26 +90,43 @@ class Builder {
             *largest = first;
             groups.push_back(second);
         }
-        const std::size_t node = boxes_.size();
-        boxes_.resize(node + BOX_SIZE, glm::vec4(0));
-        for (std::size_t i = 0; i < most_children; ++i) {
-            const std::size_t at = node + 2 * i;
-            if (i >= groups.size()) {
-                boxes_[at] = glm::vec4(1, 1, 1, flat_bits(NONE));
-                boxes_[at + 1] = glm::vec4(-1, -1, -1, 0);
-                continue;
-            }
-            const Group& group = groups[i];
-            const std::uint32_t entry =
-                group.items.size() == 1 ? group.items[0].entry : build(group.items, depth + 1);
-            boxes_[at] = corner(group.box.min, -1, entry);
-            boxes_[at + 1] = corner(group.box.max, 1, 0);
+        const std::size_t node = add_node();
+        for (std::size_t i = 0; i < groups.size(); ++i)
+            set_child(node, i,
+                      {groups[i].box, groups[i].items.size() == 1 ? groups[i].items[0].entry
+                                                                  : build(groups[i].items, depth + 1)});
+        return static_cast<std::uint32_t>(node);
+    }
+
+    /// Puts items without an end before a tree, if there is one.
+    std::uint32_t put_before(std::span<const FlatItem> endless, std::uint32_t tree) {
+        while (!endless.empty()) {
+            const std::size_t node = add_node(), count = std::min(endless.size(), most_children - 1);
+            for (std::size_t i = 0; i < count; ++i)
+                set_child(node, i, endless[i]);
+            if (tree != NONE) set_child(node, count, {endless[0].box, tree});
+            endless = endless.subspan(count);
+            tree = static_cast<std::uint32_t>(node);
         }
-        return static_cast<std::uint32_t>(node / BOX_SIZE);
+        return tree;
     }
 
   private:
     static constexpr int most_depth = 40;
+
+    std::size_t add_node() {
+        for (std::size_t i = 0; i < most_children; ++i) {
+            boxes_.emplace_back(1, 1, 1, flat_bits(NONE));
+            boxes_.emplace_back(-1, -1, -1, 0);
+        }
+        return boxes_.size() / BOX_SIZE - 1;
+    }
+
+    void set_child(std::size_t node, std::size_t number, const FlatItem& child) {
+        const std::size_t at = node * BOX_SIZE + 2 * number;
+        boxes_[at] = corner(child.box.min, -1, child.entry);
+        boxes_[at + 1] = corner(child.box.max, 1, 0);
+    }
 
     static glm::vec4 corner(Vec3 at, double side, std::uint32_t word) {
         constexpr double rounding = 2e-6, least_size = 0.05;
@@ -126,8 +143,11 @@ class Builder {
 
 std::uint32_t build_flat_boxes(std::vector<FlatItem>& items, std::vector<glm::vec4>& boxes) {
     std::erase_if(items, [](const FlatItem& item) { return item.box.empty(); });
-    if (items.empty()) return NONE;
-    return Builder(boxes).build(items, 0);
+    const auto bounded =
+        std::ranges::partition(items, [](const FlatItem& item) { return item.box.max.x < flat_endless; });
+    const std::span<FlatItem> endless(bounded), others(items.begin(), bounded.begin());
+    Builder builder(boxes);
+    return builder.put_before(endless, others.empty() ? NONE : builder.build(others, 0));
 }
 
 } // namespace graftal

@@ -164,7 +164,6 @@ std::string lack(const FlatRequest& request) {
         (request.view.ground && has_pattern(request.view.ground->material)))
         return "a solid pattern";
     for (const CutNode& node : request.prepared.cut.nodes) {
-        if (node.unbounded) return "an endless plane";
         if (node.sealed) return "a singular map";
     }
     if (request.detail.error_px > SelfShadows::lit_as_px)
@@ -195,8 +194,12 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
     FlatModel flat;
     const bool pictured = std::ranges::any_of(request.textures.of_material,
                                               [](const auto& texture) { return texture != nullptr; });
+    constexpr double far = flat_endless;
     Flattener(*graph, pictured, flat)
-        .run(request.view.camera.location, ground.bounds.node[graph->root], request.prepared.root_steps);
+        .run(request.view.camera.location,
+             ground.layers.cut.nodes[graph->root].unbounded ? Box{Vec3(-far), Vec3(far)}
+                                                            : ground.bounds.node[graph->root],
+             request.prepared.root_steps);
     add_light(request, flat);
     return flat;
 }

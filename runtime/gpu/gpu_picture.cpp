@@ -38,8 +38,8 @@ template<typename Value> std::span<const std::byte> bytes_of(const std::vector<V
 GpuPicture::GpuPicture(Gpu& gpu, ImageSize size, const Tile& window, const Samples& samples)
     : gpu_(gpu), size_(size), window_(window), samples_(samples) {}
 
-Status GpuPicture::prepare(const FlatModel& model) {
-    Status status = gpu_.load(picture_spirv, film_binding + 1, sizeof(Job));
+Status GpuPicture::prepare(const FlatModel& model, std::uint32_t frames) {
+    Status status = gpu_.load(picture_spirv, film_binding + 1, sizeof(Job), frames);
     const std::span<const std::byte> scene = std::as_bytes(std::span(&model.scene, 1));
     for (const std::span<const std::byte> bytes :
          {bytes_of(model.boxes), bytes_of(model.parts), bytes_of(model.nodes), bytes_of(model.looks),

@@ -22,8 +22,10 @@ class GpuPicture {
     /// `window`: the part of a picture of this size that is drawn. The device outlives it.
     GpuPicture(Gpu& gpu, ImageSize size, const Tile& window, const Samples& samples);
 
-    /// Makes the kernel, and brings the model to the device.
-    Status prepare(const FlatModel& model);
+    /// Makes the kernel, and brings the model to the device. `frames`: objects in each other that rays have
+    /// room for. More of them take more of the device's memory, and so its time.
+    Status prepare(const FlatModel& model, std::uint32_t frames = usual_frames);
+    static constexpr std::uint32_t usual_frames = 64, most_frames = 256;
 
     /// Adds samples until each pixel has `count`, or is calm. `goes_on` is asked between pieces, which take
     /// about 30 ms, with the share that is done; after it says false the status is a failure: "interrupted".

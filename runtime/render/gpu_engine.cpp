@@ -50,39 +50,10 @@ class GpuDrawing {
     }
 
     Status draw(const FlatModel& model, Gpu& gpu) {
-        const std::uint32_t lattice = lattice_of(plan_.wanted);
-        const std::uint32_t most = lattice > 0 ? GpuPicture::lattice_points(lattice)
-                                               : static_cast<std::uint32_t>(plan_.wanted.most_samples);
-        GpuPicture drawing(gpu, view_.size, window_, {lattice, options_.sequence});
-        if (Status status = drawing.prepare(model); !status.ok()) return status;
         film_.begin({window_, picture_.channels, view_.film});
-        const double most_steps = options_.work(view_.quality) * steps_a_second;
-        std::uint32_t count = options_.progressive ? 1 : most;
-        for (std::uint32_t done = 0;; ++pass_) {
-            Status status = drawing.sample(count, [&](double share) {
-                tell((done + share * (count - done)) / most);
-                return !cancel_.raised();
-            });
-            if (!status.ok() && (!cancel_.raised() || pass_ == 0)) return status;
-            GpuPicture::Seen seen;
-            if (Status read = drawing.read(view_.film, plan_.wanted.noise_255, picture_, seen); !read.ok())
-                return read;
-            if (seen.lost > 0) return Status::failure("its kernel has no room for parts that lie so deep");
-            note(seen, lattice > 0 ? 0 : count, drawing.seconds());
-            film_.tile(window_, picture_, pass_);
-            if (Status shown = film_.end(pass_, picture_, nullptr); !shown.ok()) return shown;
-            if (report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
-            if (!status.ok()) return status;
-            done = count;
-            const double left = most_steps - seen.steps;
-            const auto affordable = static_cast<std::uint32_t>(
-                std::clamp(done * left / std::max(seen.steps, 1.0), 0.0, static_cast<double>(most)));
-            if (done == most || affordable == 0) {
-                report_.finished = done == most;
-                return {};
-            }
-            count = std::min({most, growth_of_passes * done, done + affordable});
-        }
+        bool fits = false;
+        const Status status = draw(model, gpu, GpuPicture::usual_frames, fits);
+        return fits ? status : draw(model, gpu, GpuPicture::most_frames, fits);
     }
 
     /// Whether some picture has appeared.
@@ -90,6 +61,45 @@ class GpuDrawing {
     const NativeReport& report() const { return report_; }
 
   private:
+    /// `fits`: rays have room for what lies in each other, as far as is known.
+    Status draw(const FlatModel& model, Gpu& gpu, std::uint32_t frames, bool& fits) {
+        fits = true;
+        const std::uint32_t lattice = lattice_of(plan_.wanted);
+        const std::uint32_t most = lattice > 0 ? GpuPicture::lattice_points(lattice)
+                                               : static_cast<std::uint32_t>(plan_.wanted.most_samples);
+        GpuPicture drawing(gpu, view_.size, window_, {lattice, options_.sequence});
+        if (Status status = drawing.prepare(model, frames); !status.ok()) return status;
+        const double most_steps = options_.work(view_.quality) * steps_a_second;
+        // The first sample tells what the others take, and whether they have room.
+        for (std::uint32_t done = 0, count = 1;;) {
+            Status status = drawing.sample(count, [&](double share) {
+                tell((done + share * (count - done)) / most);
+                return !cancel_.raised();
+            });
+            if (!status.ok() && !(cancel_.raised() && has_begun())) return status;
+            GpuPicture::Seen seen;
+            if (Status read = drawing.read(view_.film, plan_.wanted.noise_255, picture_, seen); !read.ok())
+                return read;
+            fits = !(seen.lost > 0);
+            if (!fits) return Status::failure("its kernel has no room for parts that lie so deep");
+            done = count;
+            const double left = most_steps - seen.steps;
+            const auto affordable = static_cast<std::uint32_t>(
+                std::clamp(done * left / std::max(seen.steps, 1.0), 0.0, static_cast<double>(most)));
+            const bool finished = done == most, last = finished || affordable == 0 || !status.ok();
+            if (last || options_.progressive) {
+                note(seen, lattice > 0 ? 0 : count, drawing.seconds());
+                film_.tile(window_, picture_, pass_);
+                if (Status shown = film_.end(pass_++, picture_, nullptr); !shown.ok()) return shown;
+                if (report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
+            }
+            report_.finished = finished && status.ok();
+            if (last) return status;
+            count = std::min(options_.progressive ? growth_of_passes * done : most, done + affordable);
+            count = std::min(count, most);
+        }
+    }
+
     static std::uint32_t lattice_of(const Sampling& wanted) {
         if (wanted.most_samples > 0) return 0;
         return wanted.antialias ? std::uint32_t{1} << static_cast<unsigned>(*wanted.antialias - 1) : 1;

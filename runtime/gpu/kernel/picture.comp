@@ -21,6 +21,9 @@
 
 #include "runtime/gpu/kernel/layout.glsl"
 
+layout(constant_id = 0) const int MOST_FRAMES = 64;
+const int MOST_LATER = 5 * MOST_FRAMES;
+
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly restrict buffer Boxes { vec4 all_boxes[]; };
 layout(std430, binding = 1) readonly restrict buffer Parts { vec4 all_parts[]; };

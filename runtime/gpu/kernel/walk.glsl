@@ -1,9 +1,7 @@
 // Rays through the cyclic graph itself, depth first and the nearest first, into the frame of each part, as deep
 // as the parts are that the view shows (Traversal of runtime/trace does the same in doubles).
 
-/// Frames on the way from the root, and entries for later. A ray that needs more is counted as lost.
-#define MOST_FRAMES 64
-#define MOST_LATER 320
+// MOST_FRAMES lie on the way from the root, and MOST_LATER entries wait. A ray that needs more counts as lost.
 
 struct Hit {
     float t;
@@ -328,7 +326,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 float begin = near;
                 site.kind = kind;
                 vec3 wider = vec3(1.0f);
-                if (frame.faint) {
+                if (frame.faint && kind != KIND_PLANE) {
                     // About its middle, in the frame that it is drawn in.
                     const vec4 ball = nodes(frame.node * NODE_SIZE + NODE_BALL);
                     const vec3 place = place_of(xyz_of(ball), frame, origin, direction);

@@ -50,7 +50,8 @@ struct Pictures {
     GpuPicture::Seen seen;
 };
 
-Pictures draw(const Graph& graph, const Tile& window, std::uint32_t samples) {
+Pictures draw(const Graph& graph, const Tile& window, std::uint32_t samples,
+              std::uint32_t frames = GpuPicture::usual_frames) {
     const auto plain = test::traced(graph, {});
     const TraceModel model(plain->shared, lit_view(*plain), plain->options);
     Sampling sampling;
@@ -63,19 +64,23 @@ Pictures draw(const Graph& graph, const Tile& window, std::uint32_t samples) {
     const std::unique_ptr<Gpu> gpu = first_device();
     if (!gpu || !flat) return pictures;
     GpuPicture picture(*gpu, model.view.size, window, {});
-    EXPECT_TRUE(picture.prepare(*flat).ok());
+    EXPECT_TRUE(picture.prepare(*flat, frames).ok());
     EXPECT_TRUE(picture.sample(samples, [](double) { return true; }).ok());
     EXPECT_TRUE(picture.read({}, 0, pictures.gpu, pictures.seen).ok());
     PictureTracer(model).trace(sampling, {}, window, pictures.native);
     return pictures;
 }
 
-TEST(Gpu, DrawsTheNativeEnginesPicture) {
-    const Pictures pictures = draw(test::tetrahedron(0.6), {0, 0, 40, 30}, 4);
+double difference_255(const Pictures& pictures) {
     double sum = 0;
     for (std::size_t i = 0; i < pictures.gpu.pixels.size(); ++i)
         sum += std::abs(pictures.gpu.pixels[i] - pictures.native.pixels[i]);
-    EXPECT_LT(255 * sum / static_cast<double>(pictures.gpu.pixels.size()), 1.2);
+    return 255 * sum / static_cast<double>(pictures.gpu.pixels.size());
+}
+
+TEST(Gpu, DrawsTheNativeEnginesPicture) {
+    const Pictures pictures = draw(test::tetrahedron(0.6), {0, 0, 40, 30}, 4);
+    EXPECT_LT(difference_255(pictures), 1.2);
     EXPECT_GT(*std::ranges::max_element(pictures.gpu.pixels), 0.1f);
     EXPECT_EQ(pictures.seen.samples, 40 * 30 * 4);
     EXPECT_GT(pictures.seen.steps, 40 * 30 * 4);
@@ -107,7 +112,15 @@ Graph chain(int length) {
 
 TEST(Gpu, PartsThatLieTooDeepAreCounted) {
     EXPECT_EQ(draw(chain(20), {0, 0, 40, 30}, 1).seen.lost, 0);
-    EXPECT_GT(draw(chain(200), {0, 0, 40, 30}, 1).seen.lost, 0);
+    EXPECT_GT(draw(chain(100), {0, 0, 40, 30}, 1).seen.lost, 0);
+    EXPECT_GT(draw(chain(300), {0, 0, 40, 30}, 1, GpuPicture::most_frames).seen.lost, 0);
+}
+
+TEST(Gpu, DrawsAHundredObjectsInEachOther) {
+    const Pictures pictures = draw(chain(100), {0, 0, 40, 30}, 4, GpuPicture::most_frames);
+    EXPECT_EQ(pictures.seen.lost, 0);
+    EXPECT_LT(difference_255(pictures), 0.5);
+    EXPECT_GT(*std::ranges::max_element(pictures.gpu.pixels), 0.1f);
 }
 
 TEST(Gpu, CanBeInterrupted) {

@@ -31,6 +31,7 @@ using kernel_layout::Scene;
 
 inline constexpr float PI = 3.14159265358979f;
 inline constexpr float FAR = 1e30f;
+inline constexpr int MOST_FRAMES = 64, MOST_LATER = 5 * MOST_FRAMES;
 
 inline thread_local const FlatModel* model = nullptr;
 inline thread_local Scene scene;

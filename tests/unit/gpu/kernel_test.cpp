@@ -127,14 +127,48 @@ TEST(GpuKernel, MeetsAllShapes) {
     EXPECT_LE(seen.differ, 6);
 }
 
-TEST(GpuKernel, SaysWhatItCannotDraw) {
+/// A floor, and instances of an object with a wall of its own and a set within: planes at three levels.
+Graph planes() {
+    Graph graph = test::tetrahedron(0.5);
+    const ObjectId set = graph.objects[graph.root].instances[0].master;
+    const ObjectId plane = graph.primitive(PrimitiveKind::plane);
+    const ObjectId room = graph.add({"room", {}, {}, {}, {}});
+    test::place(graph, room, set, Affine::scale(Vec3(0.4)));
+    test::place(graph, room, plane,
+                Affine::translate({0, 0, -2}) * Affine::rotate(glm::normalize(Vec3(1, 0.2, 0.1)), 1.4),
+                {{0.2, 0.4, 0.9}, 0.5});
+    for (const double side : {-2.0, 2.0})
+        test::place(graph, graph.root, room,
+                    Affine::translate({side, 0.3, 0}) * Affine::scale(Vec3(0.7, 0.9, 0.8)),
+                    {{0.9, 0.3, 0.1}, 0.2});
+    for (const double height : {-1.0, -3.0, -5.0, -7.0, -9.0}) // more than one node of boxes holds
+        test::place(graph, graph.root, plane, Affine::translate({0, height, 0}));
+    return graph;
+}
+
+TEST(GpuKernel, MeetsPlanes) {
+    const auto model = test::traced(planes(), {}, Vec3(0.5, 2, 8));
+    const Comparison seen = compare(*model, 4000, 4);
+    EXPECT_GT(seen.hits, 2000);
+    EXPECT_LE(seen.differ, 4);
+    EXPECT_LT(seen.colour, 1e-3);
+}
+
+TEST(GpuKernel, PlanesAloneAreDrawn) {
     Graph graph = test::empty_graph();
     test::place(graph, graph.root, graph.primitive(PrimitiveKind::plane), {});
-    test::place(graph, graph.root, graph.primitive(PrimitiveKind::cube), {});
+    const Comparison seen = compare(*test::traced(graph, {}), 1000, 5);
+    EXPECT_GT(seen.hits, 300);
+    EXPECT_EQ(seen.differ, 0);
+}
+
+TEST(GpuKernel, SaysWhatItCannotDraw) {
+    Graph graph = test::empty_graph();
+    test::place(graph, graph.root, graph.primitive(PrimitiveKind::cube), Affine::scale(Vec3(1, 0, 1)));
     const auto model = test::traced(graph, {});
     std::string why;
     EXPECT_FALSE(flat_model({model->prepared, model->view, model->options, model->textures, {}, {}}, why));
-    EXPECT_EQ(why, "an endless plane");
+    EXPECT_EQ(why, "a singular map");
 }
 
 TEST(GpuKernel, HasTheRandomNumbersOfTheNativeEngine) {

@@ -147,12 +147,25 @@ TEST(FlatGraph, ANodeSaysWhereItIsCutAndWhatIsDrawnThen) {
 
 TEST(FlatGraph, IsNothingBeyondItsLimits) {
     EXPECT_FALSE(flattened(shrub(), 60, 3).flat) << "more edges than are allowed";
-    Graph plane = shrub();
-    test::place(plane, plane.root, plane.primitive(PrimitiveKind::plane), {});
-    EXPECT_FALSE(flattened(plane, 60).flat) << "a plane has no box";
     Graph flat = shrub();
     test::place(flat, flat.root, flat.primitive(PrimitiveKind::cube), Affine::scale(Vec3(1, 0, 1)));
     EXPECT_FALSE(flattened(flat, 60).flat) << "a map without thickness has no inverse";
+}
+
+TEST(FlatGraph, PlanesAndTheirHoldersHaveNoEndAndAreNeverCut) {
+    Graph graph = shrub();
+    const ObjectId room = graph.add({"room", {}, {}, {}, {}});
+    test::place(graph, room, graph.root, {});
+    test::place(graph, room, graph.primitive(PrimitiveKind::plane), {});
+    graph.root = room;
+    const Flattened made = flattened(graph, 60);
+    ASSERT_TRUE(made.flat);
+    const FlatNode& root = made.flat->nodes[made.flat->root];
+    ASSERT_EQ(root.edge_count, 2u);
+    EXPECT_EQ(root.unending, 0u);
+    EXPECT_EQ(root.cut_detail, 0);
+    EXPECT_LE(made.flat->edges[root.first_edge].box[3], 1.0001f);
+    EXPECT_GE(made.flat->edges[root.first_edge + 1].box[3], flat_endless);
 }
 
 TEST(FloatPair, HoldsTwiceTheDigitsOfAFloat) {

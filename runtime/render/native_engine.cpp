@@ -180,19 +180,6 @@ StageOptions stages_of(const RenderOptions& options) {
     return stages;
 }
 
-/// Reads the textures of the materials and the ground, or says which cannot be read.
-Status load_textures(const std::vector<Material>& materials, const View& view, TextureStore& store,
-                     ModelTextures& textures) {
-    Status status;
-    const auto texture_of = [&](const Material& material) {
-        return material.texture.empty() || !status.ok() ? nullptr : store.load(material.texture, status);
-    };
-    for (const Material& material : materials)
-        textures.of_material.push_back(texture_of(material));
-    if (view.ground) textures.of_ground = texture_of(view.ground->material);
-    return status;
-}
-
 bool view_model(PictureSession& session, const StageOptions& stages, PreparedView& model,
                 Compilation& compilation) {
     model.viewed = session.viewed(stages, compilation);
@@ -254,6 +241,18 @@ constinit const Engine native_engine = {
         return drawn ? std::optional(report_of(*drawn)) : std::nullopt;
     },
 };
+
+Status load_textures(const std::vector<Material>& materials, const View& view, TextureStore& store,
+                     ModelTextures& textures) {
+    Status status;
+    const auto texture_of = [&](const Material& material) {
+        return material.texture.empty() || !status.ok() ? nullptr : store.load(material.texture, status);
+    };
+    for (const Material& material : materials)
+        textures.of_material.push_back(texture_of(material));
+    if (view.ground) textures.of_ground = texture_of(view.ground->material);
+    return status;
+}
 
 DrawReport report_of(const NativeReport& drawn, std::string_view device) {
     DrawReport report;

@@ -21,6 +21,7 @@
 #include "tools/graftal/help/format.h"
 #include "tools/graftal/help/usage_errors.h"
 #include "tools/graftal/options/animate.h"
+#include "tools/graftal/options/editors.h"
 #include "tools/graftal/options/export.h"
 #include "tools/graftal/options/picture_description.h"
 #include "tools/graftal/options/points.h"
@@ -390,6 +391,8 @@ constexpr Command commands[] = {
      run_import, ".lsys", FolderAsOutput::holds_files},
     {"compare", "Measure how much two pictures differ", add_compare, complete_nothing, run_compare},
     {"studio", "Open a page to type, drag and see a model", add_studio, complete_studio, run_studio},
+    {"format", "Lay out the text of models", add_format, complete_nothing, run_format},
+    {"lsp", "Serve an editor: findings, completion, names, layout", add_lsp, complete_nothing, run_lsp},
     {"farm", "Draw gigapixels, films and sweeps in tasks, on many machines", add_farm, complete_farm,
      run_farm, "", FolderAsOutput::is_written},
 };

@@ -72,6 +72,7 @@ struct Options {
     bool error_asked = false; ///< --error or --error-world is given
     ExportOptions file;       ///< of `export`; its output and metadata are those of `render`
     bool json = false;
+    bool check = false; ///< of `format`: write nothing
     double threshold = 0;
     bool in_parts = false; ///< the picture of `render` may be larger than one that is drawn at once
 };

@@ -10,7 +10,7 @@
 #include "compiler/detail/mesh/mesh.h"
 #include "compiler/graph/graph.h"
 #include "compiler/povray/packed_placements.h"
-#include "compiler/povray/units.h"
+#include "compiler/scene/povray_units.h"
 
 namespace graftal {
 

@@ -56,7 +56,7 @@ class OrbitParser {
         if (stream_.at_name() && stream_.peek(1).is("(")) return parse_function();
         if (at_map_item()) return parse_map_item(sole_map());
         return unknown("'map', 'x =', 'y =', 'start', 'skip', 'let', NAME(x) = or '}'",
-                       {"map", "start", "skip", "let", "x", "y", "z", "probability", "tint", "material"});
+                       {orbit_words.begin(), orbit_words.end()});
     }
 
     bool unknown(const char* expected, const std::vector<std::string>& words) {

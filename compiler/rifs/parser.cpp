@@ -206,7 +206,7 @@ class RifsParser {
             return line.has_value();
         }
         std::vector<std::string> words(transform_keywords.begin(), transform_keywords.end());
-        words.insert(words.end(), {"tint", "material", "probability", "terminal"});
+        words.insert(words.end(), rifs_map_words.begin(), rifs_map_words.end());
         const Token& word = stream_.peek();
         Diagnostic& error =
             stream_.expected("a transform, 'tint', 'material', 'probability', 'terminal' or '}'");

@@ -25,14 +25,12 @@ bool parse_below(TokenStream& stream, std::optional<Expression>& below) {
     return below.has_value();
 }
 
-constexpr std::array<std::string_view, 8> item_keywords = {"map",      "codes",    "follow", "start",
-                                                           "condense", "terminal", "rifs",   "main"};
-
 } // namespace
 
 bool at_rifs_item(const TokenStream& stream) {
     return stream.at_name() &&
-           std::find(item_keywords.begin(), item_keywords.end(), stream.peek().text) != item_keywords.end();
+           std::find(rifs_item_words.begin(), rifs_item_words.end(), stream.peek().text) !=
+               rifs_item_words.end();
 }
 
 bool take_rifs_map(TokenStream& stream, std::size_t& map_room) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string_view>
@@ -11,6 +12,13 @@
 // after `false` or nothing the caller decides where to go on.
 
 namespace graftal {
+
+/// The words that begin an item of a `rifs` block, or another block.
+inline constexpr std::array<std::string_view, 8> rifs_item_words = {
+    "map", "codes", "follow", "start", "condense", "terminal", "rifs", "main"};
+/// The words that begin an item of a map, apart from those of transforms.
+inline constexpr std::array<std::string_view, 4> rifs_map_words = {"tint", "material", "probability",
+                                                                   "terminal"};
 
 /// True at a word that begins an item of a `rifs` block, or another block.
 bool at_rifs_item(const TokenStream& stream);

@@ -116,7 +116,7 @@ FrameObject framing_of(const AnalysedModel& model, std::optional<unsigned> steps
 /// Gives the model a new root at the place that the zoom asks for.
 std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<unsigned> steps,
                                    const ViewOptions& options, Diagnostics& diagnostics) {
-    std::optional<Vec3> look_at = options.camera.look_at;
+    std::optional<Vec3> look_at = options.zoom.eye ? std::nullopt : options.camera.look_at;
     if (!look_at && model.graph.settings.camera) look_at = model.graph.settings.camera->look_at;
     std::optional<Rerooted> rerooted =
         reroot({model.graph, model.components, model.bounds, steps, model.at}, options.zoom,
@@ -131,7 +131,8 @@ std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<uns
     zoomed->bounds = std::move(rerooted->bounds);
     zoomed->derivation = model.derivation;
     zoomed->clouds = model.clouds;
-    return ViewedModel{std::move(zoomed), rerooted->steps, std::move(rerooted->view), rerooted->zoom};
+    return ViewedModel{std::move(zoomed), rerooted->steps, std::move(rerooted->view), rerooted->zoom,
+                       std::make_shared<const NearWays>(std::move(rerooted->ways))};
 }
 
 } // namespace

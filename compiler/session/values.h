@@ -19,6 +19,7 @@
 #include "compiler/support/source.h"
 #include "compiler/zoom/address.h"
 #include "compiler/zoom/magnification.h"
+#include "compiler/zoom/near_ways.h"
 
 namespace graftal {
 
@@ -78,6 +79,8 @@ struct ViewedModel {
     std::optional<unsigned> steps;              ///< levels of recursion, of the new root under a zoom
     View view;
     Magnification zoom; ///< how much larger than in the world lengths are
+    /// Under a zoom: the paths from the model's root to the masters of the new root's instances. Else null.
+    std::shared_ptr<const NearWays> ways = {};
 };
 
 } // namespace graftal

@@ -85,7 +85,7 @@ double normal_quantile(double uniform, double mean, double deviation) {
     return mean + deviation * std::clamp(standard, -most_deviations, most_deviations);
 }
 
-constexpr std::array chance_functions = {
+constexpr std::array random_functions = {
     ExpressionFunction{"normal", 3, [](Arguments a) { return normal_quantile(a[0], a[1], a[2]); }},
     ExpressionFunction{"random", 3, [](Arguments a) { return a[1] + a[0] * (a[2] - a[1]); }},
 };
@@ -113,10 +113,14 @@ double table_value(std::span<const double> table, double x) {
     return table[at] + (place - piece) * (table[at + 1] - table[at]);
 }
 
+std::span<const ExpressionFunction> chance_functions() {
+    return random_functions;
+}
+
 const ExpressionFunction* chance_function(std::string_view name) {
     const auto found = std::ranges::find_if(
-        chance_functions, [&](const ExpressionFunction& function) { return name == function.name; });
-    return found == chance_functions.end() ? nullptr : &*found;
+        random_functions, [&](const ExpressionFunction& function) { return name == function.name; });
+    return found == random_functions.end() ? nullptr : &*found;
 }
 
 BinaryOperator binary_operator(std::string_view text) {

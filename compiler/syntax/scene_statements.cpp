@@ -345,6 +345,13 @@ const std::vector<std::string>& scene_keywords() {
     return keywords;
 }
 
+std::vector<std::string_view> scene_fields(SceneStatement::Kind kind) {
+    std::vector<std::string_view> keywords;
+    for (const FieldRule& rule : rules(kind))
+        keywords.push_back(rule.keyword);
+    return keywords;
+}
+
 bool at_scene_statement(const TokenStream& stream) {
     // Younger than the languages: the name of a part, too, unless a name follows.
     if (stream.at("inner")) return stream.peek(1).kind == TokenKind::name && !stream.peek(1).first_on_line;

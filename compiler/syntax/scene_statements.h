@@ -51,6 +51,9 @@ std::string layer_field(std::string_view keyword, std::size_t layer);
 /// The words that begin scene statements, for suggestions.
 const std::vector<std::string>& scene_keywords();
 
+/// The keywords of the fields that a statement of this kind may have in its braces.
+std::vector<std::string_view> scene_fields(SceneStatement::Kind kind);
+
 /// True if the next tokens begin a scene statement.
 bool at_scene_statement(const TokenStream& stream);
 

@@ -65,13 +65,15 @@ double Neighbourhood::radius(const NearPiece& piece) const {
 }
 
 /// Nothing where no level is left for it.
-std::optional<NearPiece> Neighbourhood::child(const NearPiece& piece, const Instance& instance) const {
+std::optional<NearPiece> Neighbourhood::child(const NearPiece& piece, std::uint32_t number) {
+    const Instance& instance = graph_.objects[piece.object].instances[number];
     const PathState path =
         graftal::descend({piece.object, piece.frame_from_piece, piece.tint, piece.material, piece.levels},
                          instance, components_);
     NearPiece child{path.object, path.world_from_object, piece.error, path.tint, path.material, path.levels};
     child.error += rounding * reach_of(child.frame_from_piece, bounds_[instance.master].ball);
     if (steps_ && child.levels > *steps_) return std::nullopt;
+    child.way = ways_.add(piece.way, {piece.object, number});
     return child;
 }
 
@@ -117,8 +119,9 @@ bool Neighbourhood::keep(NearPiece first, Vec3 focus, double reach, double size,
             continue;
         }
         if (walk.waiting() + kept.size() > 2 * most_pieces) return false;
-        for (const Instance& instance : graph_.objects[piece.object].instances)
-            if (std::optional<NearPiece> part = child(piece, instance)) walk.push(std::move(*part));
+        const std::size_t parts = graph_.objects[piece.object].instances.size();
+        for (std::uint32_t i = 0; i < parts; ++i)
+            if (std::optional<NearPiece> part = child(piece, i)) walk.push(std::move(*part));
     }
     return true;
 }
@@ -129,7 +132,7 @@ Neighbourhood::Outcome Neighbourhood::descend(std::uint32_t instance, Vec3 focus
     if (is_singular(step.parent_from_child)) return Outcome::flat;
     const Affine new_from_old = inverse(step.parent_from_child);
     if (!is_finite(new_from_old)) return Outcome::flat;
-    const std::optional<NearPiece> next = child(own_, step);
+    const std::optional<NearPiece> next = child(own_, instance);
     if (!next) return Outcome::no_level;
     const double enlargement = norm(new_from_old.linear);
     const double size = std::max(bounds_[step.master].ball.radius * (1 + 1e-6), reach);
@@ -145,7 +148,7 @@ Neighbourhood::Outcome Neighbourhood::descend(std::uint32_t instance, Vec3 focus
         if (!carry_over(piece)) return Outcome::too_many;
     for (std::uint32_t i = 0; i < instances.size(); ++i) {
         if (i == instance) continue;
-        std::optional<NearPiece> sibling = child(own_, instances[i]);
+        std::optional<NearPiece> sibling = child(own_, i);
         if (sibling && !carry_over(std::move(*sibling))) return Outcome::too_many;
     }
     own_ = *next;

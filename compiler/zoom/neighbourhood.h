@@ -9,6 +9,7 @@
 #include "compiler/analysis/bounding.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
+#include "compiler/zoom/near_ways.h"
 
 namespace graftal {
 
@@ -19,7 +20,8 @@ struct NearPiece {
     double error = 0; ///< how far rounding may have moved it, in units of the frame
     PathTint tint;    ///< of its path from the root
     std::optional<MaterialId> material;
-    unsigned levels = 0; ///< levels that its path has used up (graph.h, "Levels")
+    unsigned levels = 0;                ///< levels that its path has used up (graph.h, "Levels")
+    std::uint32_t way = NearWays::root; ///< its path
 };
 
 /// The parts around an object deep in the unfolding. The descent goes from the root down, instance by
@@ -51,6 +53,8 @@ class Neighbourhood {
 
     const NearPiece& own() const { return own_; }
     const std::vector<NearPiece>& others() const { return others_; }
+    /// The paths of all pieces; to be taken when the descent has ended.
+    NearWays& ways() { return ways_; }
     std::size_t lost() const { return lost_; }
     /// True if Outcome::too_many was for most_looks, and not for most_pieces.
     bool looked_too_often() const { return looks_ > most_looks; }
@@ -67,7 +71,7 @@ class Neighbourhood {
         double error;
     };
 
-    std::optional<NearPiece> child(const NearPiece& piece, const Instance& instance) const;
+    std::optional<NearPiece> child(const NearPiece& piece, std::uint32_t instance);
     bool in_reach(const NearPiece& piece, Vec3 focus, double reach) const;
     bool divisible(const NearPiece& piece) const;
     /// Appends the parts of the piece that are in reach and no larger than `size`.
@@ -84,6 +88,7 @@ class Neighbourhood {
     std::map<std::pair<ObjectId, ObjectId>, std::vector<KnownMap>>
         known_of_pair_; ///< object reached and piece
     std::vector<KnownMap> known_;
+    NearWays ways_;
     std::size_t lost_ = 0;
     std::uint64_t looks_ = 0;
 };

@@ -111,7 +111,7 @@ class Rerooter {
         Camera& camera = view.camera;
         const double radius = model_.bounds[model_.graph.root].ball.radius;
         const double depth = glm::dot(world_focus - camera.location, camera.direction);
-        camera.location = -std::max(depth, 1e-3 * radius) * camera.direction;
+        camera.location = request_.eye.value_or(-std::max(depth, 1e-3 * radius) * camera.direction);
         const double zoom = request_.zoom->times(1);
         for (Light& light : view.lights)
             if (!light.sun)
@@ -334,6 +334,7 @@ class Rerooter {
         ObjectBounds bounds;
         double error = 0;
         std::size_t too_large = 0;
+        std::vector<std::uint32_t> ways;
         for (const NearPiece& piece : pieces) {
             const ObjectBounds& of_piece = model_.bounds[piece.object];
             const bool primitive = graph.objects[piece.object].primitive.has_value() && !of_piece.unbounded;
@@ -351,6 +352,7 @@ class Rerooter {
             bounds.unbounded = bounds.unbounded || of_piece.unbounded;
             if (model_.components.unending[piece.object]) instance.levels = piece.levels + 1;
             root.instances.push_back(instance);
+            ways.push_back(piece.way);
             error = std::max(error, stretch * piece.error);
         }
         if (ground_) add_ground(root, bounds);
@@ -360,6 +362,8 @@ class Rerooter {
         if (root.instances.empty())
             return refuse("at this zoom, no part of the model is in the picture",
                           "zoom in less, or choose another place with --at or look_at");
+        result_.ways = std::move(around_.ways());
+        result_.ways.set_ends(std::move(ways));
         if (!bounds.box.empty()) bounds.ball = {bounds.box.centre(), 0.5 * glm::length(bounds.box.size())};
         graph.root = graph.add(std::move(root));
         result_.bounds.push_back(bounds);

@@ -17,12 +17,17 @@
 #include "compiler/support/diagnostics.h"
 #include "compiler/zoom/address.h"
 #include "compiler/zoom/magnification.h"
+#include "compiler/zoom/near_ways.h"
 
 namespace graftal {
 
 struct ZoomRequest {
     std::optional<Address> at;         ///< alone: the camera is relative to this object's frame
     std::optional<Magnification> zoom; ///< about the address, the point looked at, or the model's middle
+    /// With a zoom: the place of the eye, from the point that the zoom is about, in lengths after it. Then
+    /// the camera's own places say its direction only. Nothing: the camera looks at the point from as far as
+    /// before.
+    std::optional<Vec3> eye = {};
 
     bool active() const { return at || zoom; }
     bool operator==(const ZoomRequest&) const = default;
@@ -38,6 +43,7 @@ struct Rerooted {
     View view;
     Magnification zoom;    ///< how much larger than in the world lengths are
     std::size_t depth = 0; ///< instances from the old root to where the new one begins
+    NearWays ways;         ///< from the old root to the masters of the new root's instances, one each
 };
 
 /// The model that a new root is made from.

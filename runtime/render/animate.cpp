@@ -15,7 +15,7 @@
 #include "runtime/image/develop.h"
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
-#include "runtime/render/samplings.h"
+#include "runtime/fit/samplings.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/video.h"
 #include "runtime/system/temporary_directory.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/render/fit_picture.h"
+#include "runtime/fit/fit_picture.h"
 #include "runtime/system/worker_threads.h"
 
 namespace graftal {

@@ -9,12 +9,13 @@
 
 #include "compiler/detail/coarser.h"
 #include "compiler/session/stages.h"
+#include "runtime/fit/fit_picture.h"
+#include "runtime/fit/samplings.h"
 #include "runtime/render/drawing.h"
 #include "runtime/render/file_film.h"
-#include "runtime/render/fit_picture.h"
-#include "runtime/render/samplings.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
+#include "runtime/system/worker_threads.h"
 
 namespace graftal {
 
@@ -179,19 +180,6 @@ StageOptions stages_of(const RenderOptions& options) {
     return stages;
 }
 
-/// Reads the textures of the materials and the ground, or says which cannot be read.
-Status load_textures(const std::vector<Material>& materials, const View& view, TextureStore& store,
-                     ModelTextures& textures) {
-    Status status;
-    const auto texture_of = [&](const Material& material) {
-        return material.texture.empty() || !status.ok() ? nullptr : store.load(material.texture, status);
-    };
-    for (const Material& material : materials)
-        textures.of_material.push_back(texture_of(material));
-    if (view.ground) textures.of_ground = texture_of(view.ground->material);
-    return status;
-}
-
 bool view_model(PictureSession& session, const StageOptions& stages, PreparedView& model,
                 Compilation& compilation) {
     model.viewed = session.viewed(stages, compilation);
@@ -254,6 +242,18 @@ constinit const Engine native_engine = {
     },
 };
 
+Status load_textures(const std::vector<Material>& materials, const View& view, TextureStore& store,
+                     ModelTextures& textures) {
+    Status status;
+    const auto texture_of = [&](const Material& material) {
+        return material.texture.empty() || !status.ok() ? nullptr : store.load(material.texture, status);
+    };
+    for (const Material& material : materials)
+        textures.of_material.push_back(texture_of(material));
+    if (view.ground) textures.of_ground = texture_of(view.ground->material);
+    return status;
+}
+
 DrawReport report_of(const NativeReport& drawn, std::string_view device) {
     DrawReport report;
     report.summary = in_words(drawn, device);
@@ -308,7 +308,8 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
                 drawing.look(draft.rough ? *draft.rough : tried, draft.looks, plan.wanted.samples_a_pixel());
         };
     const FittedModel fitted = fit_picture(
-        prepared, options, plan, [&] { return cancel.raised() || !compilation.status.ok(); }, on_first_look);
+        prepared, options, plan, WorkerThreads(options.threads),
+        [&] { return cancel.raised() || !compilation.status.ok(); }, on_first_look);
     if (!compilation.status.ok() && !cancel.raised()) return std::nullopt;
     const TraceModel& model = *fitted.model;
     const Asked asked{graph.objects[graph.root].span, view.size, window_of(options, view.size).pixels(), plan,
@@ -344,7 +345,8 @@ std::optional<PictureFit> fit_natively(PictureSession& session, const RenderOpti
     if (!prepare_view(session, options, model, compilation)) return std::nullopt;
     const CancelFlag cancel = session.control().cancel;
     const PicturePlan plan = plan_picture(model, options);
-    const FittedModel fitted = fit_picture(model, options, plan, [&] { return cancel.raised(); });
+    const FittedModel fitted =
+        fit_picture(model, options, plan, WorkerThreads(options.threads), [&] { return cancel.raised(); });
     if (cancel.raised()) {
         compilation.status = Status::failure("interrupted");
         return std::nullopt;

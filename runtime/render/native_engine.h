@@ -36,13 +36,9 @@ std::optional<NativeReport> render_natively(PictureSession& session, const Rende
 std::optional<PictureFit> fit_natively(PictureSession& session, const RenderOptions& options,
                                        Compilation& compilation);
 
-/// The model that rays go through: the detail is resolved() for the view, and the graph prepared for both.
-struct PreparedView {
-    std::shared_ptr<const ViewedModel> viewed;
-    DetailOptions detail;
-    std::shared_ptr<const PreparedCut> prepared;
-    ModelTextures textures;
-};
+/// Reads the textures of the materials and the ground, or says which cannot be read.
+Status load_textures(const std::vector<Material>& materials, const View& view, TextureStore& store,
+                     ModelTextures& textures);
 
 /// Runs the stages before a picture. False after errors, or with a failed status.
 bool prepare_view(PictureSession& session, const RenderOptions& options, PreparedView& model,

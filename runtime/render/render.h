@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "compiler/povray/cut/cut.h"
+#include "runtime/fit/fit_picture.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/render/picture_session.h"
 #include "runtime/trace/picture_film.h"
@@ -29,36 +30,18 @@ struct DrawStart {
                               ///< asked for less work; or ""
 };
 
-/// The culling of a model and the rays of its picture, so that its work is within limits (fit_work.h). To
-/// find the fit takes rays all over the picture. A program that draws parts of it finds the fit once.
-struct PictureFit {
-    ImageSize size; ///< of the whole picture
-    double error_px = 0;
-    std::optional<double> error_world;
-    std::uint64_t most_visits = 0; ///< TraceModel::most_visits
-    Sampling sampling;
-    double seconds = 0; ///< of one processor that the whole picture will take, about
-
-    bool operator==(const PictureFit&) const = default;
-};
-
 /// A picture that is asked for, whatever engine draws it.
-struct RenderOptions {
+struct RenderOptions : PictureWishes {
     StageOptions compile;
     CutOptions cut;                            ///< of POV-Ray
     std::string output;                        ///< where the picture goes: is_picture_name(output)
     PictureFilm* film = nullptr;               ///< of the native engine, in place of the file; null: `output`
     ImageMetadata metadata;                    ///< to be written into it
     SampleFormat format = SampleFormat::srgb8; ///< of a PNG; an EXR is linear anyhow
-    std::optional<int> antialias = 2;          ///< up to 4^(N-1) samples a pixel; nothing: one
-    std::optional<int> samples;                ///< of soft light, the most a pixel; nothing: by the quality
-    std::optional<double> noise_255;           ///< largest error left; nothing: by the quality
-    std::optional<double> work_seconds;        ///< from limit_work(); nothing: by the quality
     std::uint64_t sequence = 0;                ///< TraceControl::sequence
     /// The part to be drawn, in pixels of the picture: with the bits that they have in the whole.
     std::optional<Tile> tile;
     std::optional<PictureFit> fit; ///< of the native engine: known already; requires `progressive` to be off
-    bool listed_lights = false;    ///< soft light from a list of lights (light_list.h)
     int threads = 0;               ///< 0: as many as the engine likes
     std::size_t device = 0;        ///< of the GPU engine: a number of gpu_devices()
     bool aovs = false;             ///< of an EXR: further channels (aov_channels.h)
@@ -69,11 +52,6 @@ struct RenderOptions {
     /// Called before the picture starts.
     std::function<void(const DrawStart&)> on_start;
 
-    /// Seconds of one processor that a picture may take, unless limit_work() has said: on two processors a
-    /// picture of normal quality is there within ten seconds, whatever comes before it.
-    double work(Quality quality) const {
-        return work_seconds.value_or(by_quality(quality, 5.0, 15.0, 600.0));
-    }
     /// Whether nobody has said how much work a picture may take, or how fine its light is to be.
     bool is_by_default(Quality quality) const {
         return !samples && !noise_255 && !work_seconds && quality != Quality::best;

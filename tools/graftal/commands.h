@@ -40,6 +40,9 @@ int run_print(const Options& options);
 int run_graph(const Options& options);
 int run_import(const Options& options);
 int run_compare(const Options& options);
+int run_studio(const Options& options);
+int run_format(const Options& options);
+int run_lsp(const Options& options);
 
 int run_farm(const Options& options);
 int run_farm_plan(const Options& options);

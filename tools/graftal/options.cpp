@@ -21,10 +21,12 @@
 #include "tools/graftal/help/format.h"
 #include "tools/graftal/help/usage_errors.h"
 #include "tools/graftal/options/animate.h"
+#include "tools/graftal/options/editors.h"
 #include "tools/graftal/options/export.h"
 #include "tools/graftal/options/picture_description.h"
 #include "tools/graftal/options/points.h"
 #include "tools/graftal/options/shared.h"
+#include "tools/graftal/options/studio.h"
 #include "tools/graftal/options/sweep_values.h"
 #include "tools/graftal/options/values.h"
 #include "tools/graftal/report.h"
@@ -321,6 +323,11 @@ std::string complete_nothing(Options&) {
     return {};
 }
 
+std::string complete_studio(Options& options) {
+    options.render.compile.detail.memory_bytes = options.studio.memory_bytes; // the limit of this process
+    return {};
+}
+
 /// The engine's refusal of a picture, or "".
 std::string refusal_of_engine(const Options& options) {
     return options.engine->refusal(options.render);
@@ -383,6 +390,9 @@ constexpr Command commands[] = {
     {"import", "Translate models of other programs into models of graftal", add_import, complete_nothing,
      run_import, ".lsys", FolderAsOutput::holds_files},
     {"compare", "Measure how much two pictures differ", add_compare, complete_nothing, run_compare},
+    {"studio", "Open a page to type, drag and see a model", add_studio, complete_studio, run_studio},
+    {"format", "Lay out the text of models", add_format, complete_nothing, run_format},
+    {"lsp", "Serve an editor: findings, completion, names, layout", add_lsp, complete_nothing, run_lsp},
     {"farm", "Draw gigapixels, films and sweeps in tasks, on many machines", add_farm, complete_farm,
      run_farm, "", FolderAsOutput::is_written},
 };

@@ -40,6 +40,14 @@ struct PointsSettings {
     bool light = false;
 };
 
+/// Options of `studio`.
+struct StudioOptions {
+    bool browser = true;               ///< open one
+    std::string address = "127.0.0.1"; ///< to serve on
+    std::uint16_t port = 0;            ///< 0: any
+    std::uint64_t memory_bytes = 4ull << 30;
+};
+
 /// The limit of work for a command that only tells of a model, where --work does not say.
 inline constexpr double inspecting_seconds = 10;
 
@@ -60,9 +68,11 @@ struct Options {
     AnimationOptions animation;
     PointsSettings points;
     FarmOptions farm;
+    StudioOptions studio;
     bool error_asked = false; ///< --error or --error-world is given
     ExportOptions file;       ///< of `export`; its output and metadata are those of `render`
     bool json = false;
+    bool check = false; ///< of `format`: write nothing
     double threshold = 0;
     bool in_parts = false; ///< the picture of `render` may be larger than one that is drawn at once
 };

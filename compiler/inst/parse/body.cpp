@@ -205,6 +205,7 @@ class BodyParser {
         }
         const auto shared =
             std::make_shared<const InstTest>(std::move(*test), stream_.span_from(keyword.span));
+        definition_.tests.push_back(shared);
         if (!parse_conditional({shared, true})) return false;
         if (!stream_.accept("else")) return true;
         if (stream_.at("when")) { // `else when`: the rest is inside of this one

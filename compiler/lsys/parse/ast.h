@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/support/source.h"
@@ -100,6 +101,7 @@ struct LsysProduction {
     std::optional<LsysCommands> after;   ///< carried out when the production is applied
     LsysString successor;
     std::optional<Expression> probability;
+    std::vector<std::pair<Name, Expression>> locals; ///< of `with`, as they are written
     Span span; ///< from the label or the first module to the arrow
 };
 
@@ -168,6 +170,7 @@ struct LsysBlock {
     std::optional<LsysPrecedence> precedence;
     std::vector<Name> colors;  ///< materials of the colour indices 0, 1, 2, ...
     std::vector<Name> modules; ///< declared names, each once
+    std::vector<Name> tables;  ///< their names
     std::vector<LsysVariable> variables;
     std::optional<LsysCommands> start, start_each, end_each, end;
     std::optional<LsysString> axiom;

@@ -319,6 +319,8 @@ class BlockParser {
             diagnostics_.error(name->span, "a table has two values or more");
         else if (!tables_.emplace(name->text, std::move(table)).second)
             diagnostics_.error(name->span, fmt::format("duplicate table '{}'", name->text));
+        else
+            block_.tables.push_back({name->text, name->span});
     }
 
     void parse_colors(const LsysStatement& statement) {

@@ -261,6 +261,7 @@ class ProductionParser {
     /// Each local value in place of its name; one may use those before it.
     bool write_out_locals() {
         ExpressionNames values;
+        production_.locals = locals_;
         for (auto& [name, value] : locals_) {
             if (calls_chance(value)) {
                 diagnostics_

@@ -42,6 +42,13 @@ const EnvironmentForm* form_of(std::string_view kind) {
 
 } // namespace
 
+std::vector<std::string_view> environment_kinds() {
+    std::vector<std::string_view> kinds;
+    for (const EnvironmentForm& form : environment_forms)
+        kinds.push_back(form.kind);
+    return kinds;
+}
+
 std::optional<LsysBending> parse_bending(TokenStream& stream, Span keyword) {
     LsysBending bending{.span = keyword};
     bending.before = stream.accept("before");

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "compiler/povray/sdl_writer.h"
-#include "compiler/povray/units.h"
+#include "compiler/scene/povray_units.h"
 #include "compiler/scene/light_list.h"
 #include "compiler/scene/scene.h"
 

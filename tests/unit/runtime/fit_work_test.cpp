@@ -1,4 +1,4 @@
-#include "runtime/render/fit_work.h"
+#include "runtime/fit/fit_work.h"
 
 #include <cmath>
 #include <functional>
@@ -11,6 +11,7 @@
 
 #include "compiler/detail/work.h"
 #include "compiler/primitives/mesh_file.h"
+#include "runtime/system/worker_threads.h"
 #include "runtime/trace/picture_tracer.h"
 #include "tests/unit/trace/models.h"
 
@@ -39,13 +40,14 @@ class FitWork : public testing::Test {
             if (too_large(model.options.error_px)) throw std::bad_alloc();
             return ShaderLimits();
         };
+        const WorkerThreads workers(threads_);
         return fit_work({.prepared = prepared,
                          .view = view_,
                          .options = options,
                          .textures = {},
                          .wanted = wanted_,
                          .limits_of = limits,
-                         .threads = threads_,
+                         .workers = &workers,
                          .cancelled = [] { return false; },
                          .on_first_look = on_first_look_});
     }

@@ -139,7 +139,7 @@ std::string system_header(const std::string& text) {
 TEST(Layers, TheCoreKnowsNoOperatingSystem) {
     const Layers layers = layers_of_project();
     std::set<std::string> core = layers.at("compiler/session");
-    core.merge(std::set(layers.at("runtime/trace")));
+    core.merge(std::set(layers.at("runtime/fit")));
     EXPECT_FALSE(core.count("compiler/import") || core.count("compiler/povray") ||
                  core.count("runtime/system"));
     int sources = 0;

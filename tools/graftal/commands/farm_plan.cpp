@@ -12,7 +12,7 @@
 #include "compiler/support/printable.h"
 #include "runtime/farm/join_tiles.h"
 #include "runtime/farm/model_copy.h"
-#include "runtime/render/fit_picture.h"
+#include "runtime/fit/fit_picture.h"
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/render/scene_files.h"

@@ -101,4 +101,15 @@ std::string complete_export(Options& options) {
     return {};
 }
 
+ExportModelOptions export_options(const Options& options) {
+    ExportModelOptions wanted;
+    wanted.compile = options.render.compile;
+    wanted.error_asked = options.error_asked;
+    wanted.file = options.file;
+    wanted.file.memory_bytes = options.render.compile.detail.memory_bytes;
+    wanted.file.output = options.render.output;
+    wanted.file.metadata = options.render.metadata;
+    return wanted;
+}
+
 } // namespace graftal

@@ -132,6 +132,11 @@ void add_common(CLI::App& app, Options& options) {
     app.add_flag("-q,--quiet", options.quiet, "Print only errors and warnings, no progress and no summary");
 }
 
+std::optional<Vec3> parse_place(const std::string& text) {
+    const std::optional<Vec3> place = parse_vector(text);
+    return place && is_place(*place) ? place : std::nullopt;
+}
+
 void add_camera(CLI::App& app, Options& options) {
     StageOptions& compile = options.render.compile;
     compile.view.shaped = !can_sweep(app); // a film keeps the shape of screens
@@ -179,6 +184,12 @@ void add_camera(CLI::App& app, Options& options) {
         "looks at",
         zoom_values, parse_zoom, parse_zoom_sweep,
         [&](Magnification zoom) { compile.view.zoom.zoom = zoom; });
+    add_value(
+        app, "--eye", "X,Y,Z",
+        "With --zoom: the place of the eye, from the point that the zoom is about, in lengths after it; "
+        "--camera says where it looks (default: as far from the point as --camera has it)",
+        "a place such as 0,0.5,4", parse_place, [&](Vec3 eye) { compile.view.zoom.eye = eye; })
+        ->needs("--zoom");
 }
 
 /// An error whose inverse is a number, too, or 0.

@@ -101,8 +101,6 @@ std::optional<std::pair<std::string, double>> parse_setting(std::string_view tex
     return std::pair(std::string(text.substr(0, equals)), *value);
 }
 
-namespace {
-
 std::optional<Vec3> parse_vector(std::string_view text) {
     Vec3 vector(0.0);
     for (int i = 0; i < 3; ++i) {
@@ -115,6 +113,8 @@ std::optional<Vec3> parse_vector(std::string_view text) {
     }
     return vector;
 }
+
+namespace {
 
 std::string set_camera_word(std::string_view word, CameraOverride& camera) {
     if (word == "orthographic") {

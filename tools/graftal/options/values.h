@@ -46,6 +46,9 @@ struct StepsValue {
 /// "7" or "7.3", from 0 to `most`.
 std::optional<StepsValue> parse_steps(std::string_view text, std::uint64_t most);
 
+/// "X,Y,Z": three finite numbers.
+std::optional<Vec3> parse_vector(std::string_view text);
+
 /// Magnification::parse() of values no smaller than a model may be.
 std::optional<Magnification> parse_zoom(std::string_view text);
 /// The values that parse_zoom() takes, in words.

@@ -1,4 +1,4 @@
-#include "runtime/render/fit_work.h"
+#include "runtime/fit/fit_work.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 
 #include "compiler/detail/work.h"
 #include "compiler/support/stage_price.h"
-#include "runtime/system/worker_threads.h"
 #include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
@@ -182,7 +181,8 @@ class Fitting {
         if (options.error_world) *options.error_world *= factor;
         try {
             if (!ground_) {
-                ground_ = std::make_shared<TraceGround>(*ask_.prepared, options.work_seconds);
+                ground_ = ask_.ground ? ask_.ground
+                                      : std::make_shared<TraceGround>(*ask_.prepared, options.work_seconds);
                 tried_seconds_ += StagePrice::piece * static_cast<double>(ground_->bounds.pieces);
             }
             fitted_.model =
@@ -280,8 +280,7 @@ class Fitting {
         const double shells_before = shell_seconds(model);
         const std::uint64_t work_before = tracer.statistics().work;
         TraceControl control;
-        const WorkerThreads workers(ask_.threads);
-        control.workers = &workers;
+        control.workers = ask_.workers;
         const double most_shells = most_for_shells * allowed();
         const auto too_many_shells = [&] {
             return ask_.options.culls() && shell_seconds(model) > most_shells;

@@ -1,4 +1,4 @@
-#include "compiler/povray/units.h"
+#include "compiler/scene/povray_units.h"
 
 #include <algorithm>
 #include <cmath>

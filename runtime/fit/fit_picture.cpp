@@ -1,7 +1,6 @@
-#include "runtime/render/fit_picture.h"
+#include "runtime/fit/fit_picture.h"
 
-#include "compiler/povray/units.h"
-#include "runtime/render/native_engine.h"
+#include "compiler/scene/povray_units.h"
 
 namespace graftal {
 
@@ -11,21 +10,21 @@ namespace {
 constexpr int light_steps_of_samples = 128;
 
 /// Whether pixels are estimated, by samples that differ.
-bool is_sampled(const Graph& graph, const View& view, const RenderOptions& options) {
+bool is_sampled(const Graph& graph, const View& view, const PictureWishes& wishes) {
     if (view.lens.radius > 0) return true;
-    return !options.listed_lights && (view.has_soft_light() || shows_blur(graph, view));
+    return !wishes.listed_lights && (view.has_soft_light() || shows_blur(graph, view));
 }
 
-Sampling sampling_for(bool sampled, const View& view, const RenderOptions& options) {
-    if (!sampled) return {.antialias = options.antialias};
+Sampling sampling_for(bool sampled, const View& view, const PictureWishes& wishes) {
+    if (!sampled) return {.antialias = wishes.antialias};
     const SampleGoal goal = sample_goal(view.quality);
-    return {.most_samples = options.samples.value_or(goal.most_samples),
-            .noise_255 = options.noise_255.value_or(options.samples ? 0 : goal.noise_255)};
+    return {.most_samples = wishes.samples.value_or(goal.most_samples),
+            .noise_255 = wishes.noise_255.value_or(wishes.samples ? 0 : goal.noise_255)};
 }
 
 } // namespace
 
-ShaderLimits limits_of(const PreparedCut& prepared, const View& view, const RenderOptions& options) {
+ShaderLimits limits_of(const PreparedCut& prepared, const View& view, const PictureWishes& wishes) {
     constexpr double farthest_in_povray = 1e7;
     const Ball& ball = prepared.cut.nodes[prepared.cut.root].ball;
     DrawnExtent drawn;
@@ -35,34 +34,36 @@ ShaderLimits limits_of(const PreparedCut& prepared, const View& view, const Rend
     }
     ShaderLimits limits;
     limits.farthest = farthest_in_povray / choose_units(drawn, view.camera).scale;
-    if (options.listed_lights) limits.list = list_size(view.quality);
+    if (wishes.listed_lights) limits.list = list_size(view.quality);
     return limits;
 }
 
-PicturePlan plan_picture(const PreparedView& prepared, const RenderOptions& options) {
+PicturePlan plan_picture(const PreparedView& prepared, const PictureWishes& wishes) {
     const View& view = prepared.viewed->view;
     PicturePlan plan;
-    plan.sampled = is_sampled(prepared.viewed->model->graph, view, options);
+    plan.sampled = is_sampled(prepared.viewed->model->graph, view, wishes);
     plan.detail = prepared.detail;
-    plan.detail.work_seconds = options.work(view.quality);
+    plan.detail.work_seconds = wishes.work(view.quality);
     if (plan.sampled) plan.detail.light_steps = light_steps_of_samples;
-    plan.wanted = sampling_for(plan.sampled, view, options);
+    plan.wanted = sampling_for(plan.sampled, view, wishes);
     return plan;
 }
 
-FittedModel fit_picture(const PreparedView& prepared, const RenderOptions& options, const PicturePlan& plan,
-                        const std::function<bool()>& cancelled,
-                        const std::function<void(const TraceModel&, double)>& on_first_look) {
+FittedModel fit_picture(const PreparedView& prepared, const PictureWishes& wishes, const PicturePlan& plan,
+                        const Workers& workers, const std::function<bool()>& cancelled,
+                        const std::function<void(const TraceModel&, double)>& on_first_look,
+                        std::shared_ptr<TraceGround> ground) {
     return fit_work(
         {.prepared = prepared.prepared,
          .view = prepared.viewed->view,
          .options = plan.detail,
          .textures = prepared.textures,
          .wanted = plan.wanted,
-         .limits_of = [&](const TraceModel& tried) { return limits_of(tried.prepared, tried.view, options); },
-         .threads = options.threads,
+         .limits_of = [&](const TraceModel& tried) { return limits_of(tried.prepared, tried.view, wishes); },
+         .workers = &workers,
          .cancelled = cancelled,
-         .on_first_look = on_first_look});
+         .on_first_look = on_first_look,
+         .ground = std::move(ground)});
 }
 
 PictureFit fit_of(const FittedModel& fitted, ImageSize size) {

@@ -3,7 +3,8 @@
 #include <functional>
 #include <memory>
 
-#include "runtime/render/samplings.h"
+#include "compiler/support/workers.h"
+#include "runtime/fit/samplings.h"
 #include "runtime/trace/model/trace_model.h"
 #include "runtime/trace/shade/shade.h"
 
@@ -30,12 +31,13 @@ struct FitRequest {
     const ModelTextures& textures;
     Sampling wanted;
     std::function<ShaderLimits(const TraceModel&)> limits_of;
-    int threads = 0;
-    std::function<bool()> cancelled; ///< asked often; once it says true, any model comes back
+    const Workers* workers = nullptr; ///< null: the thread that asks works alone
+    std::function<bool()> cancelled;  ///< asked often; once it says true, any model comes back
     /// If it is set, called once, after the first few rays: with a model, and the seconds that one sample for
     /// each pixel of its picture seems to take. Nothing that it does with the model changes the result,
     /// unless it has shells made.
     std::function<void(const TraceModel&, double)> on_first_look;
+    std::shared_ptr<TraceGround> ground = nullptr; ///< of `prepared`, or null: it is made anew
 };
 
 /// Tries rays over the whole picture, and predicts what all of them take. Where that is more than

@@ -1,4 +1,4 @@
-#include "runtime/render/samplings.h"
+#include "runtime/fit/samplings.h"
 
 #include <algorithm>
 #include <cmath>

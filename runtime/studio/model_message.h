@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+#include <nlohmann/json.hpp>
+
+#include "compiler/session/session.h"
+#include "runtime/studio/studio_state.h"
+
+namespace graftal {
+
+/// The message `findings`. Offsets count UTF-16 units of the file that a finding names; the model's own is
+/// its name.
+nlohmann::json findings_message(std::uint32_t number, const Compilation& compilation);
+
+/// The message `model` without its maps (docs/studio.md).
+nlohmann::json model_message(const StudioState& state, const LoweredModel& lowered,
+                             const AnalysedModel& analysed, const ViewedModel& viewed,
+                             const SourceMap& sources);
+
+/// A camera as the page says it, which looks at a point this far away.
+nlohmann::json camera_json(const Camera& camera, double distance);
+
+nlohmann::json vector_json(Vec3 vector);
+
+} // namespace graftal

@@ -1,0 +1,246 @@
+#include "runtime/studio/progressive_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "runtime/image/develop.h"
+#include "runtime/studio/clock.h"
+
+namespace graftal {
+
+namespace {
+
+/// Blocks of rough passes, in pixels along a side.
+constexpr int finest_rough = 4, usual_rough = 16, coarsest_rough = 64;
+/// Seconds that the first rough pass, and a later one, may take by what is known so far.
+constexpr double soon_seconds = 0.04, later_seconds = 0.5;
+/// Rays that are traced before the first pass, and the seconds after which they have said enough.
+constexpr std::uint64_t probe_rays = 64;
+constexpr double probe_seconds = 0.04;
+/// The rough model, against the one that is asked for: coarser errors, and fewest parts a ray.
+constexpr double rough_error = 8;
+constexpr std::uint64_t rough_visits = 1024;
+/// Blocks from which on a pass is one piece of work.
+constexpr int whole_block = 8;
+/// Pixels along a side of a window: for few workers, and for many.
+constexpr int window_px = 128, wide_window_px = 256, few_workers = 4;
+/// Samples of a pass for each of the pass before.
+constexpr int growth_of_samples = 4;
+
+double samples_in(ImageSize size, const Sampling& sampling) {
+    return sampling.samples_a_pixel() * size.width * size.height;
+}
+
+/// The windows of a picture, from its middle outwards.
+std::vector<Tile> windows_of(ImageSize size, int side) {
+    std::vector<Tile> tiles;
+    for (int y = 0; y < size.height; y += side)
+        for (int x = 0; x < size.width; x += side)
+            tiles.push_back({x, y, std::min(side, size.width - x), std::min(side, size.height - y)});
+    const auto off_middle = [&](const Tile& tile) {
+        return std::hypot(tile.x + 0.5 * tile.width - 0.5 * size.width,
+                          tile.y + 0.5 * tile.height - 0.5 * size.height);
+    };
+    std::ranges::stable_sort(tiles, {}, off_middle);
+    return tiles;
+}
+
+Image image_of(int width, int height) {
+    Image image{width, height, 3, {}};
+    image.pixels.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    return image;
+}
+
+/// One sample of each block.
+Image thinned(const Image& picture, int block) {
+    Image image = image_of((picture.width + block - 1) / block, (picture.height + block - 1) / block);
+    auto out = image.pixels.begin();
+    for (int y = 0; y < picture.height; y += block)
+        for (int x = 0; x < picture.width; x += block)
+            out = std::copy_n(picture.pixels.begin() + 3 * (std::ptrdiff_t{y} * picture.width + x), 3, out);
+    return image;
+}
+
+} // namespace
+
+ProgressivePicture::ProgressivePicture(PreparedView prepared, const PictureWishes& wishes,
+                                       std::function<const Workers&()> workers,
+                                       std::shared_ptr<TraceGround> ground, double seconds_a_sample)
+    : prepared_(std::move(prepared)), wishes_(wishes), workers_(std::move(workers)),
+      plan_(plan_picture(prepared_, wishes)), ground_(std::move(ground)),
+      seconds_a_sample_(seconds_a_sample) {}
+
+bool ProgressivePicture::step(const std::function<bool()>& cancelled, const std::function<bool()>& for_good,
+                              const PictureListener& listener) {
+    switch (phase_) {
+    case Phase::begin:
+        begin(cancelled);
+        return true;
+    case Phase::fit:
+        fit(for_good);
+        return true;
+    case Phase::rough:
+    case Phase::fine:
+        if (trace(cancelled, listener) && next_window_ == (whole_.empty() ? windows_ : whole_).size())
+            end_pass(listener);
+        return true;
+    case Phase::done:
+        break;
+    }
+    return false;
+}
+
+/// Makes the rough model, and learns what its rays take.
+void ProgressivePicture::begin(const std::function<bool()>& cancelled) {
+    if (!rough_) {
+        DetailOptions options = plan_.detail;
+        if (options.culls()) {
+            options.error_px *= rough_error;
+            if (options.error_world) *options.error_world *= rough_error;
+        }
+        if (!ground_) ground_ = std::make_shared<TraceGround>(*prepared_.prepared, options.work_seconds);
+        rough_ =
+            std::make_unique<TraceModel>(prepared_.prepared, view(), options, prepared_.textures, ground_);
+        rough_->most_visits = std::min(rough_->most_visits, rough_visits);
+    }
+    if (!(seconds_a_sample_ > 0)) probe(cancelled);
+    phase_ = Phase::rough;
+    int block = usual_rough / 2;
+    while (block < coarsest_rough && seconds_of({.block = block}) > soon_seconds)
+        block *= 2;
+    start_pass({.block = block});
+}
+
+void ProgressivePicture::probe(const std::function<bool()>& cancelled) {
+    PictureTracer tracer(*rough_, limits_of(*prepared_.prepared, view(), wishes_));
+    TraceControl control;
+    control.workers = &workers_();
+    const double start = clock_seconds();
+    control.cancelled = [&] { return cancelled() || clock_seconds() - start > probe_seconds; };
+    tracer.probe(0, probe_rays, control);
+    const auto rays = static_cast<double>(std::max<std::uint64_t>(tracer.statistics().camera_rays, 1));
+    seconds_a_sample_ = (clock_seconds() - start) / rays;
+}
+
+double ProgressivePicture::seconds_of(const Sampling& sampling) const {
+    return seconds_a_sample_ * samples_in(view().size, sampling);
+}
+
+void ProgressivePicture::start_pass(const Sampling& sampling) {
+    sampling_ = sampling;
+    next_window_ = 0;
+    statistics_ = {};
+    pass_seconds_ = pass_samples_ = 0;
+    whole_.clear();
+    if (sampling.block >= whole_block) {
+        whole_.push_back({whole_of(view().size), {}});
+    } else if (windows_.empty()) {
+        const int side = workers_().count() > few_workers ? wide_window_px : window_px;
+        for (const Tile& tile : windows_of(view().size, side))
+            windows_.push_back({tile, {}});
+    }
+}
+
+/// Traces the next window. False if it was cancelled.
+bool ProgressivePicture::trace(const std::function<bool()>& cancelled, const PictureListener& listener) {
+    Window& window = (whole_.empty() ? windows_ : whole_)[next_window_];
+    const TraceModel& model = phase_ == Phase::rough ? *rough_ : *fitted_.model;
+    TraceControl control;
+    control.workers = &workers_();
+    control.cancelled = cancelled;
+    if (sampling_->most_samples > 0) {
+        window.meters.resize(window.tile.pixels());
+        control.samples = &window.meters;
+    }
+    Image picture = image_of(window.tile.width, window.tile.height);
+    PictureTracer tracer(model, limits_of(*prepared_.prepared, view(), wishes_));
+    const double start = clock_seconds();
+    const bool whole = tracer.trace(*sampling_, control, window.tile, picture);
+    pass_seconds_ += clock_seconds() - start;
+    pass_samples_ += static_cast<double>(tracer.statistics().camera_rays);
+    if (!whole) return false;
+    statistics_ += tracer.statistics();
+    show(window, picture, listener);
+    ++next_window_;
+    return true;
+}
+
+void ProgressivePicture::show(const Window& window, const Image& picture,
+                              const PictureListener& listener) const {
+    const int block = sampling_->block;
+    Image shown = block > 1 ? thinned(picture, block) : picture;
+    const Developer developer(view().film, SampleFormat::srgb8, window.tile.x / block, window.tile.y / block);
+    developer.develop(shown, 0, shown.height);
+    ShownTile tile{window.tile, block, pass_, {}};
+    tile.rgb8.reserve(shown.pixels.size());
+    for (const float sample : shown.pixels)
+        tile.rgb8 += static_cast<char>(level8_of(sample));
+    listener.on_tile(std::move(tile));
+}
+
+void ProgressivePicture::end_pass(const PictureListener& listener) {
+    if (pass_samples_ > 0) seconds_a_sample_ = pass_seconds_ / pass_samples_;
+    ShownPass shown;
+    shown.pass = pass_++;
+    shown.samples = sampling_->samples_a_pixel();
+    shown.noise_255 = statistics_.noise_255();
+    const TraceModel& model = phase_ == Phase::rough ? *rough_ : *fitted_.model;
+    if (model.options.culls()) shown.error_px = model.projection.error_px();
+    if (phase_ == Phase::rough) {
+        rough_seconds_a_sample_ = seconds_a_sample_;
+        plan_rough();
+    } else if (queue_.empty()) {
+        phase_ = Phase::done;
+        for (Window& window : windows_)
+            window.meters = {};
+    } else {
+        const double before = sampling_->most_samples > 0 ? sampling_->samples_a_pixel() : 0;
+        const Sampling& last = queue_.front();
+        const double left = last.samples_a_pixel() - (last.most_samples > 0 ? before : 0);
+        shown.seconds_left = seconds_a_sample_ * std::max(left, 0.0) * view().size.width * view().size.height;
+        start_pass(queue_.back());
+        queue_.pop_back();
+    }
+    shown.done = phase_ == Phase::done;
+    listener.on_pass(shown);
+}
+
+/// Finer passes of the rough model as long as they are soon there.
+void ProgressivePicture::plan_rough() {
+    for (const int step : {4, 2}) {
+        const Sampling finer{.block = sampling_->block / step};
+        if (finer.block < finest_rough || seconds_of(finer) > later_seconds) continue;
+        start_pass(finer);
+        return;
+    }
+    phase_ = Phase::fit;
+}
+
+void ProgressivePicture::fit(const std::function<bool()>& for_good) {
+    FittedModel fitted = fit_picture(prepared_, wishes_, plan_, workers_(), for_good, {}, ground_);
+    if (for_good()) return;
+    fitted_ = std::move(fitted);
+    rough_.reset();
+    plan_fine();
+}
+
+void ProgressivePicture::plan_fine() {
+    phase_ = Phase::fine;
+    const Sampling& finest = fitted_.sampling;
+    queue_ = {finest};
+    if (finest.most_samples > 0) {
+        Sampling fewer = finest;
+        for (int count = finest.most_samples / growth_of_samples; count > 0; count /= growth_of_samples) {
+            fewer.most_samples = count;
+            queue_.push_back(fewer);
+        }
+    } else if (finest.block == 1 && finest.antialias) {
+        queue_.push_back({});
+    }
+    if (finest.block == 1) queue_.push_back({.block = 2});
+    start_pass(queue_.back());
+    queue_.pop_back();
+}
+
+} // namespace graftal

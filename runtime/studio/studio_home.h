@@ -1,0 +1,77 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "compiler/graph/settings.h"
+#include "compiler/session/session.h"
+#include "compiler/support/files.h"
+#include "compiler/support/workers.h"
+#include "runtime/trace/model/trace_model.h"
+
+namespace graftal {
+
+/// The door by which a session's messages leave it. Called by the thread that works.
+class StudioSink {
+  public:
+    virtual ~StudioSink() = default;
+    virtual void text(const std::string& message) = 0;
+    virtual void binary(const std::string& message) = 0;
+};
+
+/// The model that a page opens with.
+struct OpenedModel {
+    std::string name; ///< a path, whose ending is the language's
+    std::string text;
+};
+
+/// A file that the page wants, made of the state as the command line makes it.
+struct FileJob {
+    std::vector<std::string> words; ///< of the command line, without its output; of `render` or `export`
+    OpenedModel model;              ///< as the page has it now
+    std::string path;               ///< where it goes, from where the home was started; "": into memory
+    std::string suffix;             ///< of a file in memory
+};
+
+/// The file of a job, or why there is none.
+struct FileResult {
+    std::string error;
+    std::string path;     ///< as it was written; "" in memory
+    std::string name;     ///< in memory
+    std::string contents; ///< likewise
+};
+
+/// The doors from a studio's session to the world: the program `graftal studio`, or a page alone, stand
+/// behind them. Used by the thread that works.
+class StudioHome {
+  public:
+    virtual ~StudioHome() = default;
+
+    virtual std::string name() const = 0; ///< "program" or "browser"
+    virtual std::string version() const = 0;
+    virtual OpenedModel opened() const = 0;
+    virtual std::vector<std::string> engines() const { return {"native"}; }
+    virtual std::vector<std::string> formats() const { return {}; } ///< of export: their endings
+
+    virtual const Files& files() const = 0;
+    virtual std::string root() const { return {}; } ///< LowerOptions::root
+    /// `threads`: 0 for as many as the home likes. Valid until the next call.
+    virtual const Workers& workers(int threads) = 0;
+    /// Gives a new session what it asks of textures, skies and foreign models.
+    virtual void equip(Session&) {}
+    /// Reads the textures of the materials and the ground.
+    virtual Status load_textures(const Graph&, const View&, ModelTextures&) { return {}; }
+
+    using OnShare = std::function<void(double share)>;
+    using OnResult = std::function<void(FileResult result)>;
+    /// Makes a file beside the session's work, and calls the functions at any time, by any thread; the last
+    /// once.
+    virtual void make_file(FileJob, CancelFlag, OnShare, OnResult on_result) {
+        on_result({"this home writes no files", {}, {}, {}});
+    }
+    /// Ends what make_file() has begun: none of its functions is called after it.
+    virtual void end_jobs() {}
+};
+
+} // namespace graftal

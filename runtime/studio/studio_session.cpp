@@ -1,0 +1,390 @@
+#include "runtime/studio/studio_session.h"
+
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/session/stages.h"
+#include "runtime/studio/asks.h"
+#include "runtime/studio/binary_message.h"
+#include "runtime/studio/clock.h"
+#include "runtime/studio/file_asks.h"
+#include "runtime/studio/message_reader.h"
+#include "runtime/studio/model_message.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t most_message_bytes = 16u << 20u;
+/// Of a zoom, at once.
+constexpr double least_factor = 1e-3;
+/// Asks, and faults, that wait for their answers.
+constexpr std::size_t most_waiting = 256;
+
+/// Copies of a deep value would use up the stack.
+nlohmann::json parsed(std::string_view message) {
+    constexpr int deepest = 32;
+    return nlohmann::json::parse(message,
+                                 [](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+                                     if (depth > deepest)
+                                         throw BadMessage("this message is nested too deeply");
+                                     return true;
+                                 });
+}
+
+nlohmann::json fault_message(const std::string& text) {
+    return {{"type", "fault"}, {"text", text}};
+}
+
+} // namespace
+
+StudioSession::StudioSession(StudioHome& home, StudioSink& sink, std::function<void()> wake)
+    : home_(home), sink_(sink), wake_(std::move(wake)),
+      pointer_(home, CancelFlag([this] { return outdated(); })) {}
+
+void StudioSession::hear(std::string_view message) {
+    std::string problem;
+    try {
+        if (message.size() > most_message_bytes)
+            throw BadMessage(fmt::format("a message has at most {} bytes", most_message_bytes));
+        note(parsed(message));
+        return;
+    } catch (const nlohmann::json::exception& fault) {
+        problem = fmt::format("this is no message: {}", fault.what());
+    } catch (const BadMessage& fault) {
+        problem = fault.what();
+    }
+    const std::lock_guard lock(inbox_);
+    if (faults_.size() < most_waiting) faults_.push_back(std::move(problem));
+    waiting_ = true;
+}
+
+void StudioSession::note(const nlohmann::json& message) {
+    const MessageReader fields(message);
+    const std::string type = fields.needed_text("type");
+    if (type == "state") {
+        StudioState state = read_state(message, true);
+        const std::lock_guard lock(inbox_);
+        if (state.number <= newest_)
+            throw BadMessage(fmt::format("state {} comes after state {}", state.number, newest_.load()));
+        newest_ = state.number;
+        // A state that nobody has taken has a text that this one may go without.
+        if (!state.text && heard_) state.text = std::move(heard_->text);
+        heard_ = std::move(state);
+        stale_ = true;
+    } else if (type == "ask") {
+        Ask ask{static_cast<std::uint32_t>(fields.needed_whole("id", UINT32_MAX)), fields.needed_text("what"),
+                message};
+        const std::lock_guard lock(inbox_);
+        if (asks_.size() >= most_waiting) throw BadMessage("too many asks wait for an answer");
+        asks_.push_back(std::move(ask));
+        waiting_ = true;
+    } else {
+        throw BadMessage(fmt::format("there is no message '{}'", type));
+    }
+}
+
+void StudioSession::send(const nlohmann::json& message) {
+    sink_.text(message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+bool StudioSession::work(double budget_seconds) {
+    if (!std::exchange(greeted_, true)) {
+        const OpenedModel opened = home_.opened();
+        send({{"type", "hello"},
+              {"version", home_.version()},
+              {"home", home_.name()},
+              {"engines", home_.engines()},
+              {"formats", home_.formats()},
+              {"name", opened.name},
+              {"text", opened.text}});
+    }
+    const double end = clock_seconds() + budget_seconds;
+    do {
+        try {
+            take_state();
+            tell_of_file();
+            if (answer_next()) continue;
+            const auto cut_short = [&] { return clock_seconds() > end + (patience_ - 1) * budget_seconds; };
+            if (stage_ == Stage::compile)
+                compile();
+            else if (!thumbnails_.empty() && !draws_first())
+                draw_thumbnail(cut_short);
+            else if (stage_ == Stage::picture)
+                draw(cut_short);
+            else
+                return false;
+        } catch (const std::bad_alloc&) {
+            fail("graftal has too little memory for this model: make it, or its picture, smaller");
+        } catch (const std::exception& fault) {
+            fail(fault.what());
+        }
+    } while (!stopped_ && clock_seconds() < end);
+    return !stopped_;
+}
+
+void StudioSession::fail(const std::string& why) {
+    send(fault_message(why));
+    stage_ = Stage::nothing;
+    picture_.reset();
+}
+
+void StudioSession::take_state() {
+    std::deque<std::string> faults;
+    std::optional<StudioState> heard;
+    {
+        const std::lock_guard lock(inbox_);
+        faults = std::exchange(faults_, {});
+        heard = std::exchange(heard_, std::nullopt);
+        stale_ = false;
+        waiting_ = !asks_.empty();
+    }
+    for (const std::string& fault : faults)
+        send(fault_message(fault));
+    if (!heard) return;
+    if (heard->name.empty()) heard->name = state_.name;
+    if (!heard->text) heard->text = std::move(state_.text);
+    state_ = *std::move(heard);
+    stage_ = Stage::nothing;
+    picture_ = nullptr;
+    if (!state_.text || state_.name.empty()) {
+        send(fault_message("the first state has no 'name' or no 'text'"));
+        return;
+    }
+    stage_ = Stage::compile;
+}
+
+/// False after errors, or where the flag is raised.
+bool StudioSession::prepare(ModelSession& model, StudioState& state, PreparedView& prepared,
+                            Compilation& compilation) {
+    if (!model.session || model.name != state.name) {
+        model = {std::make_unique<Session>(state.name, home_.files()), state.name, std::nullopt};
+        home_.equip(*model.session);
+        model.session->set_control({CancelFlag([this] { return outdated(); }), {}});
+    }
+    if (model.text != state.text) {
+        model.session->edit(*state.text);
+        model.text = state.text;
+    }
+    StageOptions& stages = state.stages;
+    stages.lower.root = home_.root();
+    prepared.viewed = model.session->viewed(stages, compilation);
+    if (outdated() || !prepared.viewed) return false;
+    compilation.status =
+        home_.load_textures(prepared.viewed->model->graph, prepared.viewed->view, prepared.textures);
+    if (!compilation.status.ok()) return false;
+    prepared.detail = resolved(stages.detail, *prepared.viewed);
+    prepared.prepared = model.session->prepared(stages, compilation);
+    return !outdated() && prepared.prepared;
+}
+
+void StudioSession::compile() {
+    const bool is_same_text = model_.session && model_.name == state_.name && model_.text == state_.text;
+    compilation_ = {};
+    PreparedView prepared;
+    const bool is_drawn = prepare(model_, state_, prepared, compilation_);
+    if (outdated()) return;
+    send(findings_message(state_.number, compilation_));
+    described_ = false;
+    stage_ = is_drawn ? Stage::picture : Stage::nothing;
+    if (!is_drawn) return;
+    std::shared_ptr<TraceGround> ground = ground_of_ == prepared.prepared ? ground_ : nullptr;
+    ground_of_ = prepared.prepared;
+    picture_ = std::make_unique<ProgressivePicture>(
+        std::move(prepared), PictureWishes{},
+        [this]() -> const Workers& { return home_.workers(state_.threads); }, std::move(ground),
+        is_same_text ? seconds_a_sample_ : 0);
+}
+
+/// Whether the state's picture is not yet worth looking at.
+bool StudioSession::draws_first() const {
+    constexpr int enough = 2; // passes
+    return stage_ == Stage::picture && !picture_->done() && picture_->passes() < enough;
+}
+
+void StudioSession::draw_thumbnail(const std::function<bool()>& cut_short) {
+    Thumbnail& thumbnail = thumbnails_.front();
+    if (!thumbnail.picture) {
+        Compilation compilation;
+        PreparedView prepared;
+        const bool is_drawn = prepare(thumbnail_model_, thumbnail.state, prepared, compilation);
+        if (outdated()) return;
+        if (!is_drawn) return end_thumbnail("this model has errors");
+        constexpr int samples = 4;
+        constexpr double work_seconds = 1;
+        thumbnail.picture = std::make_unique<ProgressivePicture>(
+            std::move(prepared), PictureWishes{.samples = samples, .work_seconds = work_seconds},
+            [this]() -> const Workers& { return home_.workers(0); });
+        return;
+    }
+    PictureListener listener;
+    listener.on_tile = [&](ShownTile tile) { thumbnail.tiles.push_back(std::move(tile)); };
+    listener.on_pass = [&](const ShownPass& shown) {
+        if (!shown.done) thumbnail.tiles.clear();
+    };
+    thumbnail.picture->step([&] { return outdated() || cut_short(); }, [this] { return outdated(); },
+                            listener);
+    if (thumbnail.picture->done()) end_thumbnail({});
+}
+
+void StudioSession::end_thumbnail(const std::string& error) {
+    const Thumbnail thumbnail = std::move(thumbnails_.front());
+    thumbnails_.pop_front();
+    nlohmann::json message{{"type", "answer"}, {"id", thumbnail.id}};
+    if (!error.empty()) message["error"] = error;
+    for (const ShownTile& tile : thumbnail.tiles)
+        sink_.binary(tile_message(
+            {thumbnail.id, static_cast<std::uint32_t>(tile.pass), tile.tile, tile.block}, tile.rgb8));
+    send(message);
+}
+
+void StudioSession::describe() {
+    if (std::exchange(described_, true)) return;
+    Compilation compilation;
+    const auto lowered = model_.session->lowered(state_.stages, compilation);
+    const auto analysed = model_.session->analysed(state_.stages, compilation);
+    if (!lowered || !analysed) return;
+    send(model_message(state_, *lowered, *analysed, *picture_->prepared().viewed, compilation.sources));
+}
+
+void StudioSession::draw(const std::function<bool()>& cut_short) {
+    PictureListener listener;
+    listener.on_tile = [this](const ShownTile& shown) {
+        if (outdated()) return;
+        sink_.binary(tile_message(
+            {state_.number, static_cast<std::uint32_t>(shown.pass), shown.tile, shown.block}, shown.rgb8));
+    };
+    listener.on_pass = [this](const ShownPass& shown) {
+        if (outdated()) return;
+        send({{"type", "pass"},
+              {"number", state_.number},
+              {"pass", shown.pass},
+              {"samples", shown.samples},
+              {"seconds_left", shown.seconds_left ? nlohmann::json(*shown.seconds_left) : nlohmann::json()},
+              {"noise_255", shown.noise_255 ? nlohmann::json(*shown.noise_255) : nlohmann::json()},
+              {"error_px", shown.error_px},
+              {"done", shown.done}});
+    };
+    bool was_cut = false;
+    const auto cancelled = [&] {
+        if (outdated() || waiting_) return true;
+        return cut_short();
+    };
+    const int passes = picture_->passes();
+    if (!picture_->step(
+            cancelled, [this] { return outdated(); }, listener))
+        stage_ = Stage::nothing;
+    was_cut = !outdated() && !waiting_ && cut_short();
+    patience_ = was_cut ? 2 * patience_ : 1;
+    ground_ = picture_->ground();
+    seconds_a_sample_ = picture_->rough_seconds_a_sample();
+    if (picture_->passes() > 0 && passes == 0 && !outdated()) describe();
+}
+
+bool StudioSession::answer_next() {
+    // Asks are about the last state.
+    if (stage_ == Stage::compile) return false;
+    Ask ask;
+    {
+        const std::lock_guard lock(inbox_);
+        if (asks_.empty()) return false;
+        ask = std::move(asks_.front());
+        asks_.pop_front();
+        waiting_ = !asks_.empty();
+    }
+    nlohmann::json message{{"type", "answer"}, {"id", ask.id}};
+    try {
+        if (ask.what == "write" || ask.what == "thumbnail") {
+            if (!state_.text) throw BadMessage("no state was sent");
+            if (ask.what == "write")
+                start_file(ask);
+            else
+                thumbnails_.push_back(thumbnail_of(ask));
+            return true;
+        }
+        message.update(answer(ask));
+    } catch (const BadMessage& fault) {
+        message["error"] = fault.what();
+    }
+    send(message);
+    return true;
+}
+
+StudioSession::Thumbnail StudioSession::thumbnail_of(const Ask& ask) const {
+    constexpr std::size_t most_thumbnails = 64;
+    constexpr int most_side = 1024;
+    if (thumbnails_.size() >= most_thumbnails) throw BadMessage("too many thumbnails wait");
+    Thumbnail thumbnail{ask.id, read_state(ask.message, false), nullptr, {}};
+    StudioState& state = thumbnail.state;
+    if (std::max(state.stages.view.size.width, state.stages.view.size.height) > most_side)
+        throw BadMessage(fmt::format("a thumbnail has at most {} pixels along a side", most_side));
+    if (state.name.empty()) state.name = state_.name;
+    if (!state.text) state.text = state_.text;
+    return thumbnail;
+}
+
+/// Has the home make a file. The answer comes when it is made.
+void StudioSession::start_file(const Ask& ask) {
+    FileJob job = file_job(state_, ask.message);
+    {
+        const std::lock_guard lock(inbox_);
+        if (writing_) throw BadMessage("another file is being made");
+        writing_.emplace().id = ask.id;
+    }
+    const auto note = [this](const auto& change) {
+        const std::lock_guard lock(inbox_);
+        if (writing_) change(*writing_);
+        if (wake_) wake_();
+    };
+    home_.make_file(
+        std::move(job), CancelFlag([this] { return stopped_.load(); }),
+        [note](double share) { note([&](Writing& writing) { writing.share = share; }); },
+        [note](FileResult result) { note([&](Writing& writing) { writing.result = std::move(result); }); });
+}
+
+void StudioSession::tell_of_file() {
+    std::optional<Writing> writing;
+    {
+        const std::lock_guard lock(inbox_);
+        constexpr double noticed = 0.01;
+        if (!writing_ || (!writing_->result && writing_->share < writing_->told_share + noticed)) return;
+        writing_->told_share = writing_->share;
+        writing = writing_->result ? std::exchange(writing_, std::nullopt) : writing_;
+    }
+    if (!writing->result) {
+        send({{"type", "progress"}, {"number", writing->id}, {"stage", "write"}, {"share", writing->share}});
+        return;
+    }
+    const FileResult& result = *writing->result;
+    nlohmann::json message{{"type", "answer"}, {"id", writing->id}};
+    if (!result.error.empty())
+        message["error"] = result.error;
+    else if (!result.path.empty())
+        message["path"] = result.path;
+    else
+        sink_.binary(file_message(writing->id, result.name, result.contents));
+    send(message);
+}
+
+nlohmann::json StudioSession::answer(const Ask& ask) {
+    // The asks about text come from compiler/editing: their place is here.
+    for (const char* const what :
+         {"complete", "hover", "definition", "rename", "format", "map", "pull", "digraph", "vary"})
+        if (ask.what == what) throw BadMessage(fmt::format("'{}': not yet", ask.what));
+    if (!state_.text) throw BadMessage("no state was sent");
+    const MessageReader fields(ask.message);
+    pointer_.look_at(state_);
+    if (ask.what == "pick") return pointer_.pick(fields.needed_number("x"), fields.needed_number("y"));
+    if (ask.what == "zoom") {
+        const double factor = fields.needed_number("factor");
+        if (!(factor >= least_factor && factor <= 1 / least_factor))
+            throw BadMessage("'factor' is out of range");
+        return pointer_.zoom(fields.needed_number("x"), fields.needed_number("y"), factor);
+    }
+    if (ask.what == "command") return {{"command", command_line(state_)}};
+    throw BadMessage(fmt::format("there is no ask '{}'", ask.what));
+}
+
+} // namespace graftal

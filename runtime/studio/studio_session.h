@@ -1,0 +1,136 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/studio/pointer.h"
+#include "runtime/studio/progressive_picture.h"
+#include "runtime/studio/studio_home.h"
+#include "runtime/studio/studio_state.h"
+
+namespace graftal {
+
+/// One page's model: hears its messages, and does the work that they ask for, piece by piece
+/// (docs/studio.md). It knows no operating system; its home does.
+///
+/// One thread calls work(); another may call hear() and stop() at any time. With one thread for all, work()
+/// returns after its budget, or some pieces later where a piece is long.
+class StudioSession {
+    /// The stages of one model, and the text that they know.
+    struct ModelSession {
+        std::unique_ptr<Session> session;
+        std::string name;
+        std::optional<std::string> text;
+    };
+
+  public:
+    /// Home and sink outlive it. `wake`: called by any thread when work() has something to do that nobody
+    /// said.
+    StudioSession(StudioHome& home, StudioSink& sink, std::function<void()> wake = {});
+    ~StudioSession() {
+        stop();
+        home_.end_jobs();
+    }
+    StudioSession(const StudioSession&) = delete;
+    StudioSession& operator=(const StudioSession&) = delete;
+
+    /// Notes a message. Work on a state before it ends soon; answers come from work().
+    void hear(std::string_view message);
+
+    /// Works for about so many seconds. False when there is nothing to do until the next message.
+    bool work(double budget_seconds);
+
+    /// Ends all work soon, and for good.
+    void stop() { stopped_ = true; }
+
+    /// Number of the newest state that was heard; 0 before the first.
+    std::uint32_t newest() const { return newest_; }
+
+    StageRuns runs() const { return model_.session ? model_.session->runs() : StageRuns{}; }
+    /// Passes of the last state's picture that are complete.
+    int passes() const { return picture_ ? picture_->passes() : 0; }
+
+  private:
+    enum class Stage { nothing, compile, picture };
+
+    struct Ask {
+        std::uint32_t id = 0;
+        std::string what;
+        nlohmann::json message;
+    };
+
+    /// A file that is made, or was.
+    struct Writing {
+        std::uint32_t id = 0;
+        double share = 0, told_share = -1;
+        std::optional<FileResult> result;
+    };
+
+    /// A small picture of another state.
+    struct Thumbnail {
+        std::uint32_t id = 0;
+        StudioState state; ///< with its text
+        std::unique_ptr<ProgressivePicture> picture;
+        std::vector<ShownTile> tiles; ///< of the pass under way
+    };
+
+    // For hear().
+    void note(const nlohmann::json& message);
+
+    // For work().
+    void take_state();
+    bool answer_next();
+    Thumbnail thumbnail_of(const Ask& ask) const;
+    void start_file(const Ask& ask);
+    void tell_of_file();
+    bool draws_first() const;
+    void draw_thumbnail(const std::function<bool()>& cut_short);
+    void end_thumbnail(const std::string& error);
+    bool prepare(ModelSession& model, StudioState& state, PreparedView& prepared, Compilation& compilation);
+    void compile();
+    void describe();
+    void draw(const std::function<bool()>& cut_short);
+    void fail(const std::string& why);
+    nlohmann::json answer(const Ask& ask);
+    void send(const nlohmann::json& message);
+    bool outdated() const { return stale_ || stopped_; }
+
+    StudioHome& home_;
+    StudioSink& sink_;
+    std::function<void()> wake_;
+    bool greeted_ = false;
+
+    std::mutex inbox_;
+    std::optional<StudioState> heard_;
+    std::deque<Ask> asks_;
+    std::deque<std::string> faults_;
+    std::optional<Writing> writing_;
+    std::atomic<std::uint32_t> newest_ = 0;
+    std::atomic<bool> stale_ = false;   ///< a newer state was heard
+    std::atomic<bool> waiting_ = false; ///< asks or faults were heard
+    std::atomic<bool> stopped_ = false;
+
+    Stage stage_ = Stage::nothing;
+    StudioState state_; ///< with its text
+    ModelSession model_;
+    ModelSession thumbnail_model_;
+    std::deque<Thumbnail> thumbnails_;
+    Compilation compilation_; ///< of the state
+    std::unique_ptr<ProgressivePicture> picture_;
+    Pointer pointer_;
+    std::shared_ptr<TraceGround> ground_; ///< of the last picture
+    std::shared_ptr<const PreparedCut> ground_of_;
+    bool described_ = false;      ///< the state's model was told
+    double seconds_a_sample_ = 0; ///< of the last picture of this text
+    double patience_ = 1;         ///< budgets that the next piece may take
+};
+
+} // namespace graftal

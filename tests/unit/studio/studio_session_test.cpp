@@ -1,0 +1,218 @@
+#include "runtime/studio/studio_session.h"
+
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/studio/page.h"
+
+namespace graftal {
+namespace {
+
+using nlohmann::json;
+
+/// A fern's many maps, drawn for long.
+constexpr const char* heavy = "rifs heavy {\n"
+                              "  map a { scale 0.7  translate <0.3, 0.3, 0.3> }\n"
+                              "  map b { scale 0.7  translate <-0.3, 0.3, -0.3> }\n"
+                              "  map c { scale 0.7  translate <0.3, -0.3, -0.3> }\n"
+                              "  map d { scale 0.7  translate <-0.3, -0.3, 0.3> }\n"
+                              "  map e { scale 0.7  translate <0, 0, 0> }\n"
+                              "  terminal sphere\n"
+                              "}\n";
+
+TEST(StudioSession, AStateGivesFindingsAModelAndAPicture) {
+    Page page;
+    page.work();
+    EXPECT_EQ(page.last("hello")["home"], "browser");
+    EXPECT_EQ(page.last("hello")["name"], "crystal.rifs");
+    page.show({{"text", crystal}});
+    page.work();
+    EXPECT_EQ(page.last("findings"),
+              (json{{"type", "findings"}, {"number", 1}, {"findings", json::array()}}));
+    const json model = page.last("model");
+    EXPECT_EQ(model["number"], 1);
+    ASSERT_EQ(model["parameters"].size(), 1u);
+    const json spread = model["parameters"][0];
+    EXPECT_EQ(spread["name"], "spread");
+    EXPECT_EQ(spread["kind"], "let");
+    EXPECT_EQ(spread["value"], 0.5);
+    const std::string text = crystal;
+    EXPECT_EQ(
+        text.substr(spread["from"], spread["to"].get<std::size_t>() - spread["from"].get<std::size_t>()),
+        "0.5");
+    EXPECT_NEAR(model["box"]["most"][1].get<double>(), 1, 1e-6);
+    EXPECT_TRUE(model["camera"].contains("location"));
+    EXPECT_EQ(page.last("pass")["done"], true);
+    EXPECT_EQ(page.last("pass")["samples"], 16);
+    EXPECT_EQ(page.count("pass"), page.last("pass")["pass"].get<std::size_t>() + 1);
+}
+
+TEST(StudioSession, TilesOfEachPassCoverThePicture) {
+    Page page;
+    page.show({{"text", crystal}, {"width", 300}, {"height", 170}});
+    page.work();
+    std::map<std::uint32_t, std::uint64_t> covered;
+    for (const SeenTile& tile : page.tiles) {
+        EXPECT_TRUE((Tile{tile.x, tile.y, tile.width, tile.height}.lies_in({300, 170})));
+        covered[tile.pass] +=
+            static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
+    }
+    EXPECT_EQ(covered.size(), page.count("pass"));
+    for (const auto& [pass, pixels] : covered)
+        EXPECT_EQ(pixels, 300u * 170u) << pass;
+    EXPECT_GT(page.tiles.front().block, page.tiles.back().block);
+    EXPECT_EQ(page.tiles.back().block, 1);
+}
+
+TEST(StudioSession, ATextWithErrorsHasNoModelAndNoPicture) {
+    Page page;
+    page.show({{"text", "// \xc3\xa4\xf0\x9f\x8c\xbf\nrifs crystal { map n { skale 1/2 } }"}});
+    page.work();
+    const json findings = page.last("findings")["findings"];
+    ASSERT_GE(findings.size(), 1u);
+    EXPECT_EQ(findings[0]["severity"], "error");
+    EXPECT_EQ(findings[0]["from"], 30) << "in units of UTF-16";
+    EXPECT_EQ(findings[0]["to"], 35);
+    EXPECT_NE(findings[0]["hint"].get<std::string>().find("scale"), std::string::npos);
+    EXPECT_EQ(page.count("model"), 0u);
+    EXPECT_TRUE(page.tiles.empty());
+    page.show({{"text", crystal}});
+    page.work();
+    EXPECT_EQ(page.last("pass")["number"], 2);
+}
+
+TEST(StudioSession, ANewCameraLowersNothingAndANewNumberParsesNothing) {
+    Page page;
+    page.show({{"text", crystal}});
+    page.work();
+    const StageRuns first = page.session.runs();
+    const std::string picture = page.picture();
+    page.show({{"camera",
+                {{"location", {0, 1, 5}}, {"look_at", {0, 0, 0}}, {"up", {0, 1, 0}}, {"angle_deg", 40}}}});
+    page.work();
+    StageRuns second = page.session.runs();
+    EXPECT_EQ(second.viewed, first.viewed + 1);
+    second.viewed = first.viewed;
+    EXPECT_EQ(second, first);
+    EXPECT_NE(page.picture(), picture);
+    page.show({{"set", {{"spread", 0.4}}}});
+    page.work();
+    const StageRuns third = page.session.runs();
+    EXPECT_EQ(third.parsed, first.parsed);
+    EXPECT_EQ(third.lowered, first.lowered + 1);
+    EXPECT_EQ(page.last("model")["parameters"][0]["value"], 0.4);
+    page.show(json::object());
+    page.work();
+    EXPECT_EQ(page.picture(), picture) << "the same state has the same picture";
+}
+
+TEST(StudioSession, ThePictureDoesNotDependOnTheBudget) {
+    Page patient, hasty;
+    patient.show({{"text", crystal}});
+    while (patient.session.work(60)) {
+    }
+    hasty.show({{"text", crystal}});
+    int rounds = 0;
+    while (hasty.session.work(0.001))
+        ++rounds;
+    EXPECT_GT(rounds, 3) << "it goes on where it was";
+    EXPECT_EQ(hasty.picture(), patient.picture());
+}
+
+TEST(StudioSession, ANewStateEndsTheWorkOnTheOneBefore) {
+    Page page;
+    page.show(
+        {{"text", heavy}, {"name", "heavy.rifs"}, {"quality", "best"}, {"width", 640}, {"height", 360}});
+    // As soon as something is seen, the page goes on.
+    page.on_message = [&] {
+        if (page.tiles.size() != 1) return;
+        page.on_message = {};
+        page.show({{"text", crystal}});
+    };
+    page.work();
+    EXPECT_EQ(page.last("pass")["number"], 2);
+    for (const json& said : page.heard)
+        EXPECT_FALSE(said["type"] == "pass" && said["number"] == 1 && said["done"] == true);
+}
+
+TEST(StudioSession, AnotherThreadEndsWorkWithinAFewRays) {
+    Page page;
+    page.show(
+        {{"text", heavy}, {"name", "heavy.rifs"}, {"quality", "best"}, {"width", 1920}, {"height", 1080}});
+    std::thread stopper([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        page.session.stop();
+    });
+    page.work(); // a picture of minutes
+    stopper.join();
+    EXPECT_FALSE(page.session.work(1));
+    EXPECT_NE(page.last("pass")["done"], true);
+}
+
+TEST(StudioSession, AsksAreAnsweredWhileAPictureIsDrawn) {
+    Page page;
+    page.show(
+        {{"text", heavy}, {"name", "heavy.rifs"}, {"quality", "best"}, {"width", 640}, {"height", 360}});
+    page.work_until([&] { return !page.tiles.empty(); });
+    page.say({{"type", "ask"}, {"id", 1u << 30u}, {"what", "command"}});
+    page.work_until([&] { return page.count("answer") > 0; });
+    EXPECT_NE(page.last("pass")["done"], true);
+    page.session.stop();
+}
+
+TEST(StudioSession, MessagesThatItCannotReadChangeNothing) {
+    Page page;
+    page.show({{"text", crystal}});
+    page.work();
+    const std::size_t heard = page.heard.size();
+    std::string deep(100'000, '[');
+    const std::string bad[] = {"",
+                               "{",
+                               "[]",
+                               "7",
+                               deep,
+                               "\xff\xfe",
+                               R"({"type": 5})",
+                               R"({"type": "stat"})",
+                               R"({"type": "state"})",
+                               R"({"type": "state", "number": 1})",
+                               R"({"type": "state", "number": -1})",
+                               R"({"type": "state", "number": 1e30})",
+                               R"({"type": "state", "number": 2, "width": 0})",
+                               R"({"type": "state", "number": 2, "width": 16384, "height": 16384})",
+                               R"({"type": "state", "number": 2, "camera": {"location": [0, 1]}})",
+                               R"({"type": "state", "number": 2, "camera": {"angle_deg": 180}})",
+                               R"({"type": "state", "number": 2, "camera": {"location": [0, 1, 1e300]}})",
+                               R"({"type": "state", "number": 2, "zoom": "much"})",
+                               R"({"type": "state", "number": 2, "at": "a..b"})",
+                               R"({"type": "state", "number": 2, "quality": "fine"})",
+                               R"({"type": "state", "number": 2, "steps": -1})",
+                               R"({"type": "state", "number": 2, "set": {"spread": "wide"}})",
+                               R"({"type": "ask", "what": "command"})",
+                               R"({"type": "ask", "id": 1073741824})"};
+    for (const std::string& message : bad)
+        page.session.hear(message);
+    page.work();
+    EXPECT_EQ(page.heard.size(), heard + std::size(bad));
+    EXPECT_EQ(page.count("fault"), std::size(bad));
+    EXPECT_EQ(page.session.runs().viewed, 1u);
+}
+
+TEST(StudioSession, TheCommandLineSaysTheState) {
+    Page page;
+    page.show({{"text", crystal},
+               {"name", "my model.rifs"},
+               {"set", {{"spread", 0.25}}},
+               {"seed", 3},
+               {"steps", 4},
+               {"camera", {{"location", {0, 1, 5}}, {"look_at", {0, 0, 0}}, {"angle_deg", 40}}}});
+    page.work();
+    EXPECT_EQ(page.ask("command")["command"],
+              "graftal render 'my model.rifs' --size 64x36 --set spread=0.25 --steps 4 --seed 3 "
+              "--camera 'location=0,1,5 look_at=0,0,0 angle=40' --quality draft --engine native");
+    EXPECT_TRUE(page.ask("nonsense").contains("error"));
+}
+
+} // namespace
+} // namespace graftal

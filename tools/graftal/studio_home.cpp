@@ -1,0 +1,182 @@
+#include "tools/graftal/studio_home.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/import/importers.h"
+#include "compiler/support/text_encoding.h"
+#include "runtime/export/export_model.h"
+#include "runtime/render/native_engine.h"
+#include "runtime/system/disk_files.h"
+#include "runtime/system/file.h"
+#include "runtime/system/temporary_directory.h"
+#include "tools/graftal/commands.h"
+#include "tools/graftal/options/export.h"
+#include "tools/graftal/report.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr const char* example_name = "crystal.rifs";
+constexpr const char* example_text = R"(let spread = 0.5
+
+rifs crystal {
+  map n { scale 1/2  translate <0,  spread, 0>  tint rgb <0.2, 0.5, 0.9> 0.5 }
+  map s { scale 1/2  translate <0, -spread, 0>  tint rgb <0.1, 0.2, 0.6> 0.5 }
+  map e { scale 1/2  translate < spread, 0, 0> }
+  map w { scale 1/2  translate <-spread, 0, 0> }
+  map f { scale 1/2  translate <0, 0,  spread>  tint rgb <1, 0.6, 0.1> 0.5 }
+  map b { scale 1/2  translate <0, 0, -spread> }
+  terminal sphere
+}
+)";
+
+} // namespace
+
+Status read_studio_model(const std::string& path, StudioModel& model) {
+    if (path.empty()) {
+        model = {{example_name, example_text}, "."};
+        return {};
+    }
+    std::string bytes;
+    if (Status status = disk_files().read(path, bytes); !status.ok()) return status;
+    model.opened = {path, decoded_text(std::move(bytes), OtherBytes::windows_1252)};
+    // A model from elsewhere may be shown to a page: it names files beside it, or below where we started.
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    model.root = lies_in(path, ".") ? "." : folder;
+    return {};
+}
+
+std::string ProgramHome::version() const {
+    return GRAFTAL_VERSION;
+}
+
+std::vector<std::string> ProgramHome::formats() const {
+    std::vector<std::string> endings;
+    for (const ExportFormat& format : export_formats())
+        endings.emplace_back(format.extension);
+    return endings;
+}
+
+const Files& ProgramHome::files() const {
+    return disk_files();
+}
+
+const Workers& ProgramHome::workers(int threads) {
+    workers_ = WorkerThreads(threads);
+    return workers_;
+}
+
+void ProgramHome::equip(Session& session) {
+    session.translate_with(importing_translator());
+    session.look_at_textures(
+        [this](const std::string& name, TextureFacts& facts) { return textures_.look_at(name, facts); });
+    session.load_sky_pictures([this](const std::string& name, LoadedSkyPicture& loaded) {
+        return textures_.load_sky(name, loaded);
+    });
+}
+
+Status ProgramHome::load_textures(const Graph& graph, const View& view, ModelTextures& textures) {
+    return graftal::load_textures(graph.materials, view, textures_, textures);
+}
+
+namespace {
+
+/// Whether files may go there: below the folder where the program was started.
+bool may_write(const std::string& path) {
+    return !std::filesystem::path(path).is_absolute() && lies_in(path, ".");
+}
+
+bool is_model_ending(std::string_view ending) {
+    return ending == ".lsys" || ending == ".rifs" || ending == ".inst";
+}
+
+/// Does what the command line does with the job's words, over the texts of the page.
+void run_words(const FileJob& job, const std::string& output, const std::string& root,
+               const CancelFlag& cancel, const StudioHome::OnShare& on_share, Compilation& compilation) {
+    std::vector<std::string> words = job.words;
+    words.insert(words.end(), {"-o", output});
+    ParsedCommandLine parsed = parse_command_line(std::move(words));
+    if (!parsed.options) {
+        compilation.status =
+            Status::failure("graftal refuses these options, and says why where it was started");
+        return;
+    }
+    Options& options = *parsed.options;
+    options.render.compile.lower.root = root;
+    MemoryFiles files(&disk_files());
+    files.set(job.model.name, job.model.text);
+    CommandSession session(options, options.operands.front(), Keep::for_views, files);
+    session.set_control({cancel, {}});
+    if (options.command->run == run_export) {
+        export_model(session, export_options(options), compilation);
+        return;
+    }
+    options.render.on_progress = [&](const DrawProgress& progress) {
+        on_share(progress.fraction.value_or(0));
+    };
+    if (options.engine->compile(session, options.render.compile, compilation))
+        options.engine->draw(session, options.render, compilation);
+}
+
+std::string first_error(const Compilation& compilation) {
+    for (const Diagnostic& finding : compilation.diagnostics.all())
+        if (finding.severity == Severity::error) return finding.message;
+    return compilation.status.message();
+}
+
+FileResult made_file(const FileJob& job, const std::string& root, const CancelFlag& cancel,
+                     const StudioHome::OnShare& on_share) {
+    if (!job.path.empty() && !may_write(job.path))
+        return {fmt::format("'{}' does not lie below the folder where graftal studio was started", job.path)};
+    TemporaryDirectory temporary;
+    FileResult result;
+    Compilation compilation;
+    std::string output = job.path;
+    if (output.empty()) {
+        result.name = std::filesystem::path(job.model.name).stem().string() + job.suffix;
+        compilation.status = temporary.create();
+        output = temporary.path() + "/" + result.name;
+    }
+    if (compilation.status.ok()) {
+        if (is_model_ending(job.suffix))
+            compilation.status = write_text(output, job.model.text);
+        else
+            run_words(job, output, root, cancel, on_share, compilation);
+    }
+    if (compilation.status.ok() && !compilation.diagnostics.has_errors() && job.path.empty())
+        compilation.status = read_text(output, result.contents);
+    result.path = job.path;
+    if (!compilation.status.ok() || compilation.diagnostics.has_errors())
+        result.error = first_error(compilation);
+    return result;
+}
+
+} // namespace
+
+void ProgramHome::make_file(FileJob job, CancelFlag cancel, OnShare on_share, OnResult on_result) {
+    end_jobs();
+    file_maker_ =
+        std::thread([job = std::move(job), cancel = std::move(cancel), on_share = std::move(on_share),
+                     on_result = std::move(on_result), model = model_] {
+            FileResult result;
+            try {
+                result = made_file(job, model->root, cancel, on_share);
+            } catch (const std::bad_alloc&) {
+                result.error = "graftal has too little memory for this file";
+            } catch (const std::exception& fault) {
+                result.error = fault.what();
+            }
+            on_result(std::move(result));
+        });
+}
+
+/// The session's flag ends a job that is still running.
+void ProgramHome::end_jobs() {
+    if (file_maker_.joinable()) file_maker_.join();
+}
+
+} // namespace graftal

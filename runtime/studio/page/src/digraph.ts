@@ -15,7 +15,7 @@ export class Digraph {
     if (maps.length < 2 || maps.length > 24) return;
     const names = maps.map(({ name }) => name);
     this.element.append(
-      element('h3', {}, 'Which map may follow which'),
+      element('h2', {}, 'Which map may follow which'),
       element('table', {},
         element('thead', {}, element('tr', {}, element('td', {}), ...names.map((name) => element('th', { scope: 'col' }, element('span', {}, name))))),
         element('tbody', {}, ...maps.map((map) => element('tr', {}, element('th', { scope: 'row' }, map.name),

@@ -55,10 +55,10 @@ export class Knobs {
     this.element.replaceChildren();
     for (const [kind, title] of groups) {
       const mine = parameters.filter((parameter) => parameter.kind === kind);
-      if (mine.length) this.element.append(element('h3', {}, title), ...mine.map((parameter) => this.parameter_row(parameter)));
+      if (mine.length) this.element.append(element('h2', {}, title), ...mine.map((parameter) => this.parameter_row(parameter)));
     }
     this.element.append(
-      element('h3', {}, 'Growth and chance'),
+      element('h2', {}, 'Growth and chance'),
       this.choice_row('steps', 'Steps'),
       this.choice_row('seed', 'Seed'),
     );

@@ -1,6 +1,6 @@
 // The page: it joins the text, the picture and the tools by one history and one session.
 import { Digraph } from './digraph';
-import { by_id, element, soon } from './dom';
+import { by_id, element, soon, svg } from './dom';
 import { Editor } from './editor';
 import { fill_help } from './help';
 import { History } from './history';
@@ -20,7 +20,6 @@ import { Time } from './time';
 import { home_transport } from './transport';
 import { Vary } from './vary';
 import { ViewControl } from './view';
-import { svg } from './dom';
 import type { Camera, Choices, Edit, Findings, Hello, Model, Pass, Progress, SentFile, Tile } from './protocol';
 
 const first_id = 2 ** 30;
@@ -50,19 +49,23 @@ class Page implements Studio, Listener {
   private readonly out: Out;
   private readonly place: Place;
   private readonly tabs: Tabs;
+  private complete = 0;
   private readonly save = soon(() => requestIdle(() => this.history.save()), 300);
   private readonly show_command = soon(() => void this.out.show(), 300);
 
   constructor() {
     this.history = new History(nothing, 'graftal history', (why) => this.changed(why));
     this.status = new Status(by_id('status'), by_id('share').firstElementChild as HTMLElement, by_id('finding'), by_id('said'), by_id('stale'), this);
-    this.picture = new Picture(by_id<HTMLCanvasElement>('picture'), (number) => this.view.painted(number));
+    this.picture = new Picture(by_id<HTMLCanvasElement>('picture'), (number) => {
+      this.view.painted(number);
+      this.tell_done();
+    });
     const overlay = by_id('overlay') as unknown as SVGSVGElement;
     const maps_layer = svg('svg', { class: 'layer' }), point_layer = svg('svg', { class: 'layer' });
     overlay.append(maps_layer, point_layer);
-    this.maps = new Maps(maps_layer, this);
+    this.maps = new Maps(maps_layer, this, (event) => void this.point.pick(...this.view.at(event)));
     this.digraph = new Digraph(this);
-    this.point = new PointTool(point_layer, this);
+    this.point = new PointTool(point_layer, by_id('picked'), this);
     this.view = new ViewControl(by_id('view'), this.picture.canvas, this, (x, y) => void this.point.pick(x, y));
     this.editor = new Editor(by_id('editor'), this);
     this.knobs = new Knobs(this);
@@ -74,7 +77,7 @@ class Page implements Studio, Listener {
     this.tabs = new Tabs(by_id('tabs'), by_id('panels'), [
       { id: 'text', label: 'Text', content: by_id('text') },
       { id: 'knobs', label: 'Knobs', content: element('div', {}, this.knobs.element, this.presets.element) },
-      { id: 'maps', label: 'Maps', content: element('div', {}, this.maps.list, this.digraph.element, this.point.element) },
+      { id: 'maps', label: 'Maps', content: element('div', {}, this.maps.list, this.digraph.element) },
       { id: 'vary', label: 'Vary', content: this.vary.element },
       { id: 'time', label: 'Time', content: this.time.element },
       { id: 'out', label: 'Save', content: this.out.element },
@@ -212,6 +215,8 @@ class Page implements Studio, Listener {
 
   sent(number: number, size: Size): void {
     this.picture.expect(number, size);
+    this.complete = 0;
+    this.tell_done();
   }
 
   async hear_hello(message: Hello): Promise<void> {
@@ -246,7 +251,16 @@ class Page implements Studio, Listener {
   }
 
   pass(message: Pass): void {
-    if (message.number === this.session.number) this.status.pass(message);
+    if (message.number !== this.session.number) return;
+    this.status.pass(message);
+    if (message.done) this.complete = message.number;
+    this.tell_done();
+  }
+
+  /** For tests, and for style: whether the last pass of the last state is on the canvas. */
+  private tell_done(): void {
+    const done = this.complete === this.session?.number && this.picture.idle && !this.session.holds;
+    document.body.dataset['picture'] = done ? 'done' : 'under way';
   }
 
   tile(tile: Tile): void {

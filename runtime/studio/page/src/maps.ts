@@ -21,7 +21,9 @@ export class Maps {
   private dragging = false;
   private readonly ask: (wish: Wish) => void;
 
-  constructor(private readonly overlay: SVGSVGElement, private readonly studio: Studio) {
+  constructor(
+    private readonly overlay: SVGSVGElement, private readonly studio: Studio, private readonly pick: (event: PointerEvent) => void,
+  ) {
     this.ask = latest((wish) => this.ask_now(wish));
   }
 
@@ -55,7 +57,12 @@ export class Maps {
     const focus = (document.activeElement as SVGElement | null)?.dataset?.['map'];
     const flat = flat_axis(model!.box);
     // While a handle is held, its element must stay: only the shapes change.
-    const boxes = maps.map((map, i) => this.box(map, i, camera, flat));
+    // Small boxes lie on large ones, and the handles of the chosen one on all.
+    const size_of = (map: ModelMap) => length(subtract(map.box.most, map.box.least)) * map.contraction;
+    const chosen = maps.findIndex(({ name }) => name === this.chosen);
+    const boxes = maps.map((map, i) => ({ map, made: this.box(map, i, camera, flat) }))
+      .sort((a, b) => size_of(b.map) - size_of(a.map)).map(({ made }) => made);
+    if (chosen >= 0) boxes.push(this.handles(maps[chosen]!, chosen, camera, flat));
     if (!this.dragging) {
       this.overlay.replaceChildren(...boxes);
       if (focus) this.overlay.querySelector<SVGElement>(`[data-map="${CSS.escape(focus)}"]`)?.focus();
@@ -107,7 +114,7 @@ export class Maps {
       style: `--hue:${hues[index % hues.length]}`, tabindex: 0, role: 'button', 'data-map': map.name,
       'aria-label': `Map ${map.name}. Arrow keys move it, with Shift they turn and scale it.`,
     });
-    const bits = [0, 1, 2, 3, 4, 5, 6, 7].filter((bit) => flat === null || !(bit & (1 << flat)));
+    const bits = corner_bits(flat);
     const corners = new Map(bits.map((bit) => [bit, at(corner(box, bit))]));
     const edges = bits.flatMap((bit) => [0, 1, 2].map((axis) => [bit, bit | (1 << axis)] as const))
       .filter(([a, b]) => a !== b && corners.get(a) && corners.get(b));
@@ -120,7 +127,6 @@ export class Maps {
     );
     const centre = at(middle(box));
     if (centre) group.append(svg('text', { x: centre[0], y: centre[1], 'font-size': 13 * scale }, map.name));
-    if (map.movable) this.add_handles(group, corners, box, at, flat, scale);
     group.addEventListener('focus', () => {
       if (this.chosen === map.name) return;
       this.chosen = map.name;
@@ -131,10 +137,12 @@ export class Maps {
     return group;
   }
 
-  private add_handles(
-    group: SVGGElement, corners: Map<number, [number, number] | null>, box: Box,
-    at: (point: Vec3) => [number, number] | null, flat: number | null, scale: number,
-  ): void {
+  private handles(map: ModelMap, index: number, camera: Camera, flat: number | null): SVGGElement {
+    const { width_px, height_px } = this.studio.size, matrix = this.matrix_of(map), { box } = map, scale = this.px_scale();
+    const at = (point: Vec3) => projected(camera, width_px, height_px, map_point(matrix, point));
+    const group = svg('g', { class: `handles${this.refused.has(map.name) ? ' bad' : ''}`, style: `--hue:${hues[index % hues.length]}` });
+    if (!map.movable) return group;
+    const corners = corner_bits(flat).map((bit) => [bit, at(corner(box, bit))] as const);
     for (const axis of [0, 1, 2].filter((one) => one !== flat)) {
       for (const side of [0, 1]) {
         const point = middle(box);
@@ -149,13 +157,15 @@ export class Maps {
         class: 'handle corner', 'data-handle': `corner ${bit}`, x: place[0] - 5.5 * scale, y: place[1] - 5.5 * scale, width: 11 * scale, height: 11 * scale,
       }));
     }
-    const seen = [...corners.values()].filter((p): p is [number, number] => p !== null), centre = at(middle(box));
-    if (!seen.length || !centre) return;
+    draggable(group, (event) => this.begin(event, map, flat));
+    const seen = corners.map(([, place]) => place).filter((p): p is [number, number] => p !== null), centre = at(middle(box));
+    if (!seen.length || !centre) return group;
     const top = Math.min(...seen.map(([, y]) => y));
     group.append(
-      svg('path', { class: 'edges', d: `M${centre[0]} ${top}V${top - 26 * scale}` }),
+      svg('path', { class: 'stem', d: `M${centre[0]} ${top}V${top - 26 * scale}` }),
       svg('circle', { class: 'handle turn', 'data-handle': 'turn', cx: centre[0], cy: top - 26 * scale, r: 6 * scale }),
     );
+    return group;
   }
 
   /** Pixels of the picture in one of the screen. */
@@ -168,7 +178,10 @@ export class Maps {
     const handle = (event.target as Element).getAttribute('data-handle');
     const { camera, size, history } = this.studio;
     if (!camera || !handle || event.button !== 0) return null;
-    this.chosen = map.name;
+    if (this.chosen !== map.name) {
+      this.chosen = map.name;
+      this.draw();
+    }
     if (!map.movable) {
       this.studio.say(map.why ?? 'The text of this map cannot be rewritten.');
       this.draw();
@@ -220,12 +233,23 @@ export class Maps {
         }
         this.wish(map, compose(by, start));
       },
-      end: () => {
+      end: (up) => {
         this.dragging = false;
+        if (up.clientX === event.clientX && up.clientY === event.clientY) {
+          this.studio.select(map.from, map.to);
+          this.pick(up);
+        }
         history.end_step();
+        this.let_go();
         this.draw();
       },
     };
+  }
+
+  /** A map that was refused goes back to where the text has it. */
+  private let_go(): void {
+    for (const name of this.refused.keys()) this.ahead.delete(name);
+    this.refused.clear();
   }
 
   private key(event: KeyboardEvent, map: ModelMap): void {
@@ -271,8 +295,14 @@ export class Maps {
     }
     const why = this.refused.get(map.name);
     if (why) this.studio.say(why);
+    if (!this.dragging) this.let_go();
     this.draw();
   }
+}
+
+/** The corners of a box, of a flat one those of its face (`corner`). */
+function corner_bits(flat: number | null): number[] {
+  return [0, 1, 2, 3, 4, 5, 6, 7].filter((bit) => flat === null || !(bit & (1 << flat)));
 }
 
 /** The axis along which the model has no depth; null: it is a solid. */

@@ -12,7 +12,7 @@ export class Out {
     element('option', { value: '.png' }, 'PNG'), element('option', { value: '.exr' }, 'EXR'));
   private readonly format = element('select', { id: 'format' });
   private readonly command = element('pre', { tabindex: 0, 'aria-label': 'Command line' });
-  private readonly path = element('input', { type: 'text', id: 'path', placeholder: 'name of a file', spellcheck: 'false' });
+  private readonly path = element('input', { type: 'text', id: 'path', placeholder: 'name.png', 'aria-label': 'Name of the picture file', spellcheck: 'false' });
 
   constructor(private readonly studio: Studio, private readonly open: (choices: Partial<Choices>) => void) {
     const pasted = element('input', { type: 'text', id: 'pasted', 'aria-label': 'Link to open', placeholder: 'paste a link here' });
@@ -28,19 +28,19 @@ export class Out {
       type: 'button', class: 'small', onclick: () => this.size(times),
     }, `${times}×`);
     this.element.append(
-      element('h3', {}, 'Picture'),
+      element('h2', {}, 'Picture'),
       element('div', { class: 'line' }, this.width, ' × ', this.height, size(1), size(2), size(4)),
       element('div', { class: 'line' }, this.picture_kind, this.button('save-picture', 'Save picture', () => this.write(
         { suffix: this.picture_kind.value, width: Number(this.width.value), height: Number(this.height.value) }))),
-      element('div', { class: 'line', id: 'at-home' }, this.path, this.button('save-path', 'Save there', () => this.write(
+      element('div', { class: 'line', id: 'at-home' }, this.path, this.button('save-path', 'Save beside the model', () => this.write(
         { path: this.path.value, width: Number(this.width.value), height: Number(this.height.value) }))),
-      element('h3', {}, 'For other programs'),
+      element('h2', {}, 'For other programs'),
       element('div', { class: 'line' }, element('label', { for: 'format' }, 'Format '), this.format,
         this.button('save-export', 'Save file', () => this.write({ suffix: this.format.value }))),
-      element('h3', {}, 'Command line'),
+      element('h2', {}, 'Command line'),
       this.command,
       element('div', { class: 'line' }, this.button('copy-command', 'Copy', () => this.copy(this.command.textContent ?? '', 'The command line'))),
-      element('h3', {}, 'Link'),
+      element('h2', {}, 'Link'),
       element('div', { class: 'line' }, this.button('copy-link', 'Copy link', () => this.copy_link())),
       link_form,
     );
@@ -66,7 +66,7 @@ export class Out {
   /** The address of this page with the model in it, without the secret that the program gave the page. */
   async copy_link(): Promise<void> {
     const elsewhere = document.querySelector<HTMLMetaElement>('meta[name="graftal-site"]')?.content;
-    const base = elsewhere ?? location.origin + location.pathname;
+    const base = elsewhere ?? location.origin + '/';
     await this.copy(base + (await fragment_of(this.studio.history.now)), 'The link');
   }
 

@@ -50,6 +50,11 @@ export class Picture {
     );
   }
 
+  /** Nothing waits to be painted. */
+  get idle(): boolean {
+    return this.queue.length === 0;
+  }
+
   private schedule(): void {
     if (this.painting) return;
     this.painting = true;
@@ -74,20 +79,26 @@ export class Picture {
       this.begin(number, size);
     }
     const start_ms = performance.now();
-    const regions = new Map<number, Tile[]>();
+    // Coarse tiles that follow each other are enlarged together, before a finer one is painted over them.
+    let coarse: Tile[] = [];
+    const enlarge = () => {
+      if (coarse.length) this.smooth(coarse);
+      coarse = [];
+    };
     let done = 0;
     while (done < count && performance.now() - start_ms < frame_share_ms) {
       const { tile, samples } = this.queue[done++]!;
       const data = tile_data(tile, samples!);
       if (!data) continue;
+      if (coarse.length && coarse[0]!.coarse !== tile.coarse) enlarge();
       if (tile.coarse === 1) {
         this.context.putImageData(data, tile.x, tile.y);
       } else {
         this.coarse_context(tile.coarse, size).putImageData(data, tile.x / tile.coarse, tile.y / tile.coarse);
-        regions.set(tile.coarse, [...(regions.get(tile.coarse) ?? []), tile]);
+        coarse.push(tile);
       }
     }
-    for (const [pixels, tiles] of regions) this.smooth(pixels, tiles);
+    enlarge();
     this.queue.splice(0, done);
     if (this.queue.length) this.schedule();
     this.painted(number);
@@ -120,8 +131,8 @@ export class Picture {
   }
 
   /** Enlarges coarse samples where these tiles are, without seams between them. */
-  private smooth(pixels: number, tiles: Tile[]): void {
-    const { context } = this, from = this.coarse.get(pixels)!.canvas;
+  private smooth(tiles: Tile[]): void {
+    const { context } = this, pixels = tiles[0]!.coarse, from = this.coarse.get(pixels)!.canvas;
     context.save();
     context.beginPath();
     for (const { x, y, width, height } of tiles) context.rect(x, y, width, height);

@@ -17,14 +17,13 @@ interface Pull {
 }
 
 export class PointTool {
-  /** Says what was picked. */
-  readonly element = element('div', { class: 'picked' });
   private picked: Picked | null = null;
   /** Where the point of the model lies, as far as the text follows the hand. */
   private lies: Vec3 = [0, 0, 0];
   private readonly ask: (pull: Pull) => void;
 
-  constructor(private readonly overlay: SVGSVGElement, private readonly studio: Studio) {
+  /** `card` says what was picked. */
+  constructor(private readonly overlay: SVGSVGElement, private readonly card: HTMLElement, private readonly studio: Studio) {
     this.ask = latest((pull) => this.pull_now(pull));
     this.draw();
   }
@@ -57,11 +56,12 @@ export class PointTool {
   draw(): void {
     const { picked, studio } = this, { camera, size } = studio;
     if (!picked) {
-      this.element.replaceChildren(element('p', { class: 'note' }, 'Click on the picture: its rule is selected in the text.'));
+      this.card.hidden = true;
       this.overlay.replaceChildren();
       return;
     }
-    this.element.replaceChildren(element('dl', {},
+    this.card.hidden = false;
+    this.card.replaceChildren(element('button', { type: 'button', 'aria-label': 'Close', onclick: () => this.forget() }, '×'), element('dl', {},
       element('dt', {}, 'Object'), element('dd', {}, picked.object),
       element('dt', {}, 'Address'), element('dd', {}, element('code', {}, picked.address || '(the whole)')),
       picked.path.length > 0 && element('dt', {}, 'Path'), picked.path.length > 0 && element('dd', {}, picked.path.join(' → '))));

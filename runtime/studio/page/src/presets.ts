@@ -21,7 +21,7 @@ export class Presets {
       this.store({ ...this.load(), [name.value.trim()]: { set, steps, time, seed, camera, at, zoom } });
     };
     this.element.replaceChildren(
-      element('h3', {}, 'Presets'),
+      element('h2', {}, 'Presets'),
       element('ul', {}, ...Object.entries(presets).map(([label, preset]) => element('li', { class: 'line' },
         element('button', { type: 'button', class: 'link', onclick: () => this.studio.change(preset) }, label),
         element('button', {

@@ -23,6 +23,7 @@ const from_history = Annotation.define<boolean>();
 
 export class Editor {
   readonly view: EditorView;
+  private shown = '';
 
   constructor(parent: HTMLElement, private readonly studio: Studio) {
     this.view = new EditorView({
@@ -42,7 +43,8 @@ export class Editor {
             if (!update.docChanged || update.transactions.every((one) => one.annotation(from_history))) return;
             const typed = update.transactions.some((one) => one.isUserEvent('input.type') || one.isUserEvent('delete'));
             const key = update.transactions.find((one) => one.isUserEvent('drag')) ? 'drag number' : typed ? 'type' : null;
-            studio.change({ text: update.state.doc.toString() }, key);
+            this.shown = update.state.doc.toString();
+            studio.change({ text: this.shown }, key);
           }),
           EditorView.domEventHandlers({
             mousedown: (event, view) => {
@@ -67,8 +69,9 @@ export class Editor {
 
   /** Brings the text of the history into view, changing only what differs, so that the cursor stays. */
   show(text: string): void {
-    const old = this.view.state.doc.toString();
+    const old = this.shown;
     if (old === text) return;
+    this.shown = text;
     let from = 0, to = old.length, end = text.length;
     while (from < to && from < end && old.charCodeAt(from) === text.charCodeAt(from)) ++from;
     while (to > from && end > from && old.charCodeAt(to - 1) === text.charCodeAt(end - 1)) --to, --end;

@@ -38,16 +38,15 @@ export class Knobs {
       if (row.write) row.write.disabled = !changed;
     }
     for (const key of ['steps', 'seed'] as const) {
-      const row = this.rows.get(`: ${key}`), value = history.now[key] ?? this.model_value(key);
-      row?.slider.show(value, key === 'steps' ? 0 : 0, Math.max(key === 'steps' ? 12 : 100, 2 * this.model_value(key)));
-      if (row) row.reset.disabled = history.now[key] === null;
+      const row = this.rows.get(`: ${key}`)!, chosen = history.now[key], own = this.model_value(key), value = chosen ?? own ?? 0;
+      row.slider.show(value, 0, Math.max(key === 'steps' ? 12 : 100, 2 * (own ?? 0)), chosen === null && own === null ? '–' : undefined);
+      row.reset.disabled = chosen === null;
     }
   }
 
-  private model_value(key: 'steps' | 'seed'): number {
-    const stats = this.studio.model?.stats;
-    const value = stats && typeof stats === 'object' ? Number(stats[key]) : NaN;
-    return Number.isFinite(value) ? value : key === 'seed' ? 1 : 0;
+  private model_value(key: 'steps' | 'seed'): number | null {
+    const stats = this.studio.model?.stats, value = stats && typeof stats === 'object' ? stats[key] : null;
+    return typeof value === 'number' ? value : null;
   }
 
   private build(parameters: Parameter[]): void {
@@ -67,13 +66,13 @@ export class Knobs {
   private parameter_row(parameter: Parameter): HTMLElement {
     const { name } = parameter, [least, most] = range_of(parameter), { history } = this.studio;
     const slider = new Slider({
-      label: name, value: parameter.value, least, most,
+      label: name, value: parameter.value, least, most, whole: is_whole(parameter, history.now.text) ? 'coarse' : null,
       change: (value, done) => {
         this.studio.change({ set: { ...history.now.set, [name]: value } }, `set ${name}`);
         if (done) history.end_step();
       },
     });
-    const reset = this.small('Reset', `Reset ${name}`, () => {
+    const reset = this.small('↺', `Reset ${name}`, () => {
       const { [name]: _, ...set } = history.now.set;
       this.studio.change({ set });
     });
@@ -92,13 +91,13 @@ export class Knobs {
 
   private choice_row(key: 'steps' | 'seed', label: string): HTMLElement {
     const slider = new Slider({
-      label, value: 0, least: 0, most: 1, whole: true,
+      label, value: 0, least: 0, most: 1, whole: 'always',
       change: (value, done) => {
         this.studio.change({ [key]: Math.max(0, value) }, `set ${key}`);
         if (done) this.studio.history.end_step();
       },
     });
-    const reset = this.small('Reset', `Reset ${label.toLowerCase()}`, () => this.studio.change({ [key]: null }));
+    const reset = this.small('↺', `Reset ${label.toLowerCase()}`, () => this.studio.change({ [key]: null }));
     return this.row(`: ${key}`, label, slider, reset, null);
   }
 
@@ -111,6 +110,11 @@ export class Knobs {
     this.rows.set(key, { slider, element: made, reset, write });
     return made;
   }
+}
+
+/** Whether the text writes a parameter without a decimal point. */
+function is_whole({ kind, literal, from, to }: Parameter, text: string): boolean {
+  return kind !== 'inner' && Boolean(literal) && from !== undefined && /^\d+$/.test(text.slice(from, to));
 }
 
 /** The range of a parameter: its own, or one around its value. */

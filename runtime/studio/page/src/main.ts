@@ -50,6 +50,9 @@ class Page implements Studio, Listener {
   private readonly place: Place;
   private readonly tabs: Tabs;
   private complete = 0;
+  private readonly sent_ms = new Map<number, number>();
+  /** From states to the first pixels of their pictures: the last ones. */
+  readonly latencies_ms: number[] = [];
   private readonly save = soon(() => requestIdle(() => this.history.save()), 300);
   private readonly show_command = soon(() => void this.out.show(), 300);
 
@@ -57,6 +60,7 @@ class Page implements Studio, Listener {
     this.history = new History(nothing, 'graftal history', (why) => this.changed(why));
     this.status = new Status(by_id('status'), by_id('share').firstElementChild as HTMLElement, by_id('finding'), by_id('said'), by_id('stale'), this);
     this.picture = new Picture(by_id<HTMLCanvasElement>('picture'), (number) => {
+      this.note_latency(number);
       this.view.painted(number);
       this.tell_done();
     });
@@ -184,7 +188,8 @@ class Page implements Studio, Listener {
     const { now, can_undo, can_redo } = this.history;
     by_id<HTMLButtonElement>('undo').disabled = !can_undo;
     by_id<HTMLButtonElement>('redo').disabled = !can_redo;
-    by_id('model-name').textContent = now.name;
+    by_id('model-name').textContent = now.name.replace(/^.*[\\/]/, '');
+    by_id('model-name').title = now.name;
     by_id<HTMLSelectElement>('quality').value = now.quality ?? 'normal';
     by_id<HTMLSelectElement>('engine').value = now.engine ?? this.hello?.engines[0] ?? 'native';
     document.title = `${now.name} – graftal studio`;
@@ -216,6 +221,7 @@ class Page implements Studio, Listener {
   sent(number: number, size: Size): void {
     this.picture.expect(number, size);
     this.complete = 0;
+    this.sent_ms.set(number, performance.now());
     this.tell_done();
   }
 
@@ -257,6 +263,13 @@ class Page implements Studio, Listener {
     this.tell_done();
   }
 
+  private note_latency(painted: number): void {
+    const sent_ms = this.sent_ms.get(painted);
+    if (sent_ms !== undefined) this.latencies_ms.push(performance.now() - sent_ms);
+    if (this.latencies_ms.length > 200) this.latencies_ms.shift();
+    for (const number of this.sent_ms.keys()) if (number <= painted) this.sent_ms.delete(number);
+  }
+
   /** For tests, and for style: whether the last pass of the last state is on the canvas. */
   private tell_done(): void {
     const done = this.complete === this.session?.number && this.picture.idle && !this.session.holds;
@@ -286,4 +299,5 @@ function requestIdle(act: () => void): void {
   else act();
 }
 
-new Page();
+// For tests, and for the curious.
+Object.assign(window, { studio: new Page() });

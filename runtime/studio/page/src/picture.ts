@@ -3,6 +3,8 @@ import { inflate, type Tile } from './protocol';
 import type { Size } from './session';
 
 const longest_hold_ms = 150, frame_share_ms = 12;
+/** Pictures of larger blocks tell less than the last good picture: finer ones have a moment to come first. */
+const largest_block_px = 16, block_hold_ms = 40;
 
 interface Ready {
   tile: Tile;
@@ -17,6 +19,8 @@ export class Picture {
   private readonly coarse = new Map<number, CanvasRenderingContext2D>();
   private queue: Ready[] = [];
   private first_ms = 0;
+  /** Pixels a sample of the coarse pass that comes in; 0: none. */
+  private coarse_pass = 0;
   private painting = false;
 
   constructor(readonly canvas: HTMLCanvasElement, private readonly painted: (number: number) => void) {
@@ -72,7 +76,8 @@ export class Picture {
     const size = this.sizes.get(number)!;
     if (number > this.shown) {
       const area = this.queue.slice(0, count).reduce((sum, { tile }) => sum + tile.width * tile.height, 0);
-      if (area < size.width_px * size.height_px && performance.now() - this.first_ms < longest_hold_ms) {
+      const held_ms = performance.now() - this.first_ms, blocks = this.queue.slice(0, count).every(({ tile }) => tile.coarse > largest_block_px);
+      if ((area < size.width_px * size.height_px && held_ms < longest_hold_ms) || (blocks && held_ms < block_hold_ms)) {
         setTimeout(() => this.schedule(), 20);
         return;
       }
@@ -106,6 +111,7 @@ export class Picture {
 
   private begin(number: number, { width_px, height_px }: Size): void {
     this.shown = number;
+    this.coarse_pass = 0;
     const { canvas } = this;
     if (canvas.width === width_px && canvas.height === height_px) return;
     const old = document.createElement('canvas');
@@ -126,6 +132,11 @@ export class Picture {
       canvas.height = Math.ceil(height_px / pixels);
       context = canvas.getContext('2d', { alpha: false })!;
       this.coarse.set(pixels, context);
+    }
+    if (this.coarse_pass !== pixels) {
+      // Until its neighbours come, a tile is smoothed against what is shown: it has no dark edges.
+      this.coarse_pass = pixels;
+      context.drawImage(this.canvas, 0, 0, width_px / pixels, height_px / pixels);
     }
     return context;
   }

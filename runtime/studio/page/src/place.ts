@@ -6,6 +6,7 @@ const most_crumbs = 4;
 
 export class Place {
   private typing = false;
+  private shown = '';
 
   constructor(private readonly form: HTMLFormElement, private readonly studio: Studio) {
     form.addEventListener('submit', (event) => {
@@ -24,8 +25,9 @@ export class Place {
   }
 
   show(): void {
-    if (this.typing) return;
-    const { at, zoom } = this.studio.history.now;
+    const { at, zoom } = this.studio.history.now, shown = JSON.stringify([at, zoom, this.typing]);
+    if (this.typing || shown === this.shown) return;
+    this.shown = shown;
     const parts = at ? at.split('.') : [];
     const hidden = Math.max(0, parts.length - most_crumbs);
     const crumb = (label: string, to: string | null, current: boolean) => element('button', {
@@ -46,6 +48,7 @@ export class Place {
   private type(): void {
     const { at, zoom } = this.studio.history.now;
     this.typing = true;
+    this.shown = '';
     const address = element('input', { name: 'at', 'aria-label': 'Address', placeholder: 'address, as of --at', value: at ?? '', spellcheck: 'false' });
     this.form.replaceChildren(
       address,

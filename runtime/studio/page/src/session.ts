@@ -29,6 +29,8 @@ export interface Listener {
 /** Ids of asks begin above all numbers of states: tiles of thumbnails carry the one, tiles of the picture the other. */
 const first_id = 2 ** 30;
 const least_wait_ms = 150, most_wait_ms = 2000;
+/** A picture this good, or begun so long ago, may be left for the next one: a drag shows as fine pictures as it has time for. */
+const good_samples = 1 / 16, patience_ms = 40;
 
 export class Session {
   number = 0;
@@ -135,9 +137,12 @@ export class Session {
         return this.listener.model_came(message);
       case 'progress':
         return this.listener.progress(message);
-      case 'pass':
-        this.begun(message.number, true);
+      case 'pass': {
+        const left_ms = this.sent_ms + patience_ms - performance.now();
+        if (message.done || message.samples >= good_samples || left_ms <= 0) this.begun(message.number, true);
+        else setTimeout(() => this.begun(message.number, true), left_ms);
         return this.listener.pass(message);
+      }
       case 'fault':
         return this.listener.fault(message.text);
       case 'answer': {

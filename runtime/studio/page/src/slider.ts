@@ -6,8 +6,8 @@ export interface SliderOptions {
   value: number;
   least: number;
   most: number;
-  /** Whole numbers only. */
-  whole?: boolean;
+  /** Whole numbers: only such, or also others where the hand moves finely. */
+  whole?: 'always' | 'coarse' | null;
   /** `done`: the drag, or the typed number, is complete. */
   change(value: number, done: boolean): void;
 }
@@ -35,22 +35,23 @@ export class Slider {
     return this.options.whole ? 1 : 10 ** Math.floor(Math.log10((this.options.most - this.options.least || 1) / 90));
   }
 
-  show(value: number, least: number, most: number): void {
+  /** `as_it_is`: what stands there in place of a number that nobody knows. */
+  show(value: number, least: number, most: number, as_it_is?: string): void {
     this.options.least = Math.min(least, value);
     this.options.most = Math.max(most, value);
     if (Math.abs(value - this.exact) > 1e-12) this.exact = value;
-    set_attributes(this.range, { min: this.options.least, max: this.options.most, step: this.options.whole ? 1 : 'any' });
+    set_attributes(this.range, { min: this.options.least, max: this.options.most, step: this.options.whole === 'always' ? 1 : 'any' });
     this.range.value = String(value);
-    const text = this.options.whole ? String(Math.round(value)) : plain_number(value);
+    const text = as_it_is ?? plain_number(value);
     this.number.textContent = text;
     this.number.setAttribute('aria-label', `${this.options.label}: ${text}. Type a number`);
     this.range.style.setProperty('--share', String((value - this.options.least) / (this.options.most - this.options.least || 1)));
   }
 
-  private put(value: number, done: boolean): void {
+  private put(value: number, done: boolean, fine = false): void {
     const { least, most, whole, change } = this.options;
     this.exact = Math.max(least, Math.min(most, value));
-    const rounded = whole ? Math.round(this.exact) : Number(this.exact.toPrecision(6));
+    const rounded = whole === 'always' || (whole && !fine) ? Math.round(this.exact) : Number(this.exact.toPrecision(6));
     const exact = this.exact;
     this.show(rounded, least, most);
     this.exact = exact;
@@ -65,16 +66,17 @@ export class Slider {
     range.setPointerCapture(down.pointerId);
     const span = () => this.options.most - this.options.least;
     if (!down.shiftKey) this.put(this.options.least + ((down.clientX - box.left - 8) / (box.width - 16)) * span(), false);
-    let last = down;
+    let last = down, fine = down.shiftKey;
     const move = (event: PointerEvent) => {
       const by = ((event.clientX - last.clientX) / (box.width - 16)) * span();
       last = event;
-      this.put(this.exact + (event.shiftKey ? by / 20 : by), false);
+      fine = event.shiftKey;
+      this.put(this.exact + (fine ? by / 20 : by), false, fine);
     };
     const up = () => {
       range.removeEventListener('pointermove', move);
       range.removeEventListener('lostpointercapture', up);
-      this.put(this.exact, true);
+      this.put(this.exact, true, fine);
     };
     range.addEventListener('pointermove', move);
     range.addEventListener('lostpointercapture', up);
@@ -88,9 +90,10 @@ export class Slider {
     const steps = by[event.key];
     let value: number;
     if (steps !== undefined) {
-      const fine = event.shiftKey && !this.options.whole ? 0.1 : 1;
-      value = this.exact + steps * fine * this.step;
-      if (!this.options.whole) value = Number(value.toFixed(12));
+      const fine = event.shiftKey && this.options.whole !== 'always';
+      value = Number((this.exact + steps * (fine ? 0.1 : 1) * this.step).toFixed(12));
+      event.preventDefault();
+      return this.put(value, false, fine);
     } else if (event.key === 'Home') value = least;
     else if (event.key === 'End') value = most;
     else if (event.key === 'Enter') return this.type();
@@ -113,7 +116,7 @@ export class Slider {
       if (!keep || input.value.trim() === '' || !Number.isFinite(value)) return;
       this.options.least = Math.min(this.options.least, value);
       this.options.most = Math.max(this.options.most, value);
-      this.put(value, true);
+      this.put(value, true, true);
     };
     input.addEventListener('keydown', (event) => {
       if (event.key === 'Enter') close(true);

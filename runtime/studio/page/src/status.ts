@@ -15,8 +15,8 @@ export class Status {
   ) {}
 
   pass({ samples, seconds_left, done }: Pass): void {
-    const count = `${Number(samples.toPrecision(3))} ${samples === 1 ? 'sample' : 'samples'} a pixel`;
-    this.line.textContent = done ? count : seconds_left === null ? `${count} …` : `${count}, ${duration(seconds_left)} left`;
+    const count = samples < 1 ? 'coarse' : `${Number(samples.toPrecision(3))} ${samples === 1 ? 'sample' : 'samples'} a pixel`;
+    this.line.textContent = done || seconds_left === null ? count : `${count}, ${duration(seconds_left)} left`;
     this.share(done ? null : 0, true);
   }
 

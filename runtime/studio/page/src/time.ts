@@ -35,7 +35,7 @@ export class Time {
       element('div', { class: 'line' }, element('label', { for: 'time-key' }, 'Over '), this.key,
         element('label', {}, 'from ', this.ends.least), element('label', {}, 'to ', this.ends.most)),
       element('div', { class: 'knob' }, element('span', { class: 'name' }, 'Now'), this.slider.range, this.slider.number,
-        element('button', { type: 'button', class: 'small', 'aria-label': 'Reset time', onclick: () => studio.change({ [this.key.value]: null }) }, 'Reset')),
+        element('button', { type: 'button', class: 'small', 'aria-label': 'Reset time', title: 'Reset time', onclick: () => studio.change({ [this.key.value]: null }) }, '↺')),
       element('div', { class: 'line' }, this.play_button, element('label', {}, 'in ', this.ends.seconds, ' seconds')),
       element('p', { class: 'note' }, 'A model reads the time as ', element('code', {}, 'age'), '. Each frame shows as soon as it is drawn.'),
     );

@@ -20,11 +20,11 @@ const browser = await chromium.launch({
 let passed = 0, failed = 0;
 
 /** Opens the page in a browser of its own; `check` gets a hand on it. */
-async function test(name, check, { width = 1280, height = 720, dark = false, opened, hash = '' } = {}) {
+async function test(name, check, { width = 1280, height = 720, dark = false, opened, hash = '', touch = false } = {}) {
   if (process.env.ONLY && !name.includes(process.env.ONLY)) return;
   const session = await serve(folder, modules, opened);
   const context = await browser.newContext({
-    viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', permissions: ['clipboard-read', 'clipboard-write'], acceptDownloads: true,
+    viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', permissions: ['clipboard-read', 'clipboard-write'], acceptDownloads: true, hasTouch: touch,
   });
   const page = await context.newPage(), faults = [];
   page.setDefaultTimeout(10_000);
@@ -348,6 +348,38 @@ await test('a reload finds everything; a link holds the model', async (hand, pag
   assert.deepEqual(hand.last().set, before.set);
   await page.evaluate(() => { location.hash = '#m=AAAA'; });
   await hand.until(async () => /no model/.test(await page.textContent('#said')), 'a bad link is told');
+});
+
+await test('fingers: one orbits, two zoom, a tap picks', async (hand, page) => {
+  const [x, y] = await hand.place_of('#view'), client = await page.context().newCDPSession(page);
+  const touch = (type, ...points) => client.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
+  await touch('touchStart', [x, y]);
+  for (let i = 1; i <= 5; ++i) await touch('touchMove', [x + 10 * i, y]);
+  await touch('touchEnd');
+  await hand.settled();
+  assert.ok(Math.abs(hand.last().camera.location[0] - 0.1) > 1);
+  await touch('touchStart', [x - 40, y], [x + 40, y]);
+  for (let i = 1; i <= 5; ++i) await touch('touchMove', [x - 40 - 8 * i, y], [x + 40 + 8 * i, y]);
+  await touch('touchEnd');
+  await hand.settled();
+  await hand.until(() => Math.abs(Number(hand.last().zoom) - 2) < 0.1, 'two fingers enlarge twice');
+  await touch('touchStart', [x, y]);
+  await touch('touchEnd');
+  await page.waitForSelector('#picked dl');
+}, { width: 390, height: 844, touch: true });
+
+await test('a file is opened, its text saved; the divider moves', async (hand, page) => {
+  await page.click('#tab-out');
+  await page.setInputFiles('input[type=file]', { name: 'twig.rifs', mimeType: 'text/plain', buffer: Buffer.from('rifs twig {\r\n  map a { scale 0.5 }\r\n}\r\n') });
+  await hand.until(() => hand.last().name === 'twig.rifs', 'the file is the model');
+  assert.equal(hand.last().text, 'rifs twig {\n  map a { scale 0.5 }\n}\n');
+  await page.keyboard.press('Control+s');
+  await hand.until(() => hand.asked('write').at(-1)?.path === 'twig.rifs', 'the text is saved');
+  const before = hand.last().width;
+  await hand.drag(await hand.place_of('#divider'), -100, 0);
+  await hand.until(() => hand.last().width > before + 90, 'the picture is wider');
+  await page.keyboard.press('Control+z');
+  await hand.until(() => hand.last().name === 'fern.rifs', 'the fern is back');
 });
 
 await test('files and the command line', async (hand, page) => {

@@ -30,6 +30,7 @@ const parts: [string, [string, string][]][] = [
   ]],
   ['Everywhere', [
     ['Ctrl+Z, Ctrl+Shift+Z', 'undo and redo: text, knobs and camera'],
+    ['Ctrl+S', 'save the text'],
     ['F6', 'go from the text to the picture to the tools'],
   ]],
 ];
@@ -39,7 +40,8 @@ export function fill_help(dialog: HTMLDialogElement): void {
     element('h2', { id: 'help-title' }, 'Hands and keys'),
     ...parts.map(([title, rows]) => element('section', {}, element('h3', {}, title),
       element('dl', {}, ...rows.flatMap(([keys, does]) => [element('dt', {}, keys), element('dd', {}, does)])))),
-    element('form', { method: 'dialog' }, element('button', { class: 'quiet' }, 'Close')),
+    element('p', { class: 'note' }, 'The editor is CodeMirror: ', element('a', { href: 'licences.html', target: '_blank' }, 'licences'), '.'),
+    element('button', { type: 'button', class: 'quiet', onclick: () => dialog.close() }, 'Close'),
   );
   dialog.addEventListener('click', (event) => event.target === dialog && dialog.close());
 }

@@ -1,6 +1,7 @@
 // The page: it joins the text, the picture and the tools by one history and one session.
 import { Digraph } from './digraph';
 import { by_id, element, soon, svg } from './dom';
+import { Divider } from './divider';
 import { Editor } from './editor';
 import { fill_help } from './help';
 import { History } from './history';
@@ -131,6 +132,14 @@ class Page implements Studio, Listener {
     // Before the editor, which has no history of its own.
     document.addEventListener('keydown', (event) => this.key(event), true);
     new ResizeObserver(() => this.resized()).observe(by_id('view'));
+    addEventListener('dragover', (event) => event.dataTransfer?.types.includes('Files') && event.preventDefault());
+    addEventListener('drop', (event) => {
+      const file = event.dataTransfer?.files[0];
+      if (!file) return;
+      event.preventDefault();
+      void this.out.open_file(file);
+    });
+    new Divider(by_id('divider'), by_id('rooms'));
     addEventListener('pagehide', () => history.save());
     addEventListener('hashchange', () => void this.open_link());
   }
@@ -140,6 +149,7 @@ class Page implements Studio, Listener {
     const key = event.key.toLowerCase(), ctrl = (event.ctrlKey || event.metaKey) && !event.altKey;
     if (ctrl && key === 'z' && !field) event.shiftKey ? this.history.redo() : this.history.undo();
     else if (ctrl && key === 'y' && !field) this.history.redo();
+    else if (ctrl && key === 's') void this.out.save_text();
     else if (event.key === 'F1') by_id<HTMLDialogElement>('help-page').showModal();
     else if (event.key === 'F6') this.next_region();
     else return;

@@ -27,7 +27,14 @@ export class Out {
     const size = (times: number) => element('button', {
       type: 'button', class: 'small', onclick: () => this.size(times),
     }, `${times}×`);
+    const file = element('input', { type: 'file', class: 'unseen', tabindex: -1, 'aria-hidden': 'true', accept: '.lsys,.rifs,.inst' });
+    file.onchange = () => void (file.files?.[0] && this.open_file(file.files[0]));
     this.element.append(
+      element('h2', {}, 'Text'),
+      element('div', { class: 'line' },
+        this.button('save-text', 'Save text', () => this.save_text()),
+        this.button('download-text', 'Download text', () => this.download_text()),
+        this.button('open-file', 'Open a file', () => file.click()), file),
       element('h2', {}, 'Picture'),
       element('div', { class: 'line' }, this.width, ' × ', this.height, size(1), size(2), size(4)),
       element('div', { class: 'line' }, this.picture_kind, this.button('save-picture', 'Save picture', () => this.write(
@@ -50,6 +57,7 @@ export class Out {
     const { hello } = this.studio;
     this.format.replaceChildren(...(hello?.formats ?? []).map((format) => element('option', { value: format.startsWith('.') ? format : `.${format}` }, format.replace(/^\./, ''))));
     this.element.querySelector<HTMLElement>('#at-home')!.hidden = hello?.home !== 'program';
+    this.element.querySelector<HTMLElement>('#save-text')!.hidden = hello?.home !== 'program';
     this.size(1);
   }
 
@@ -63,6 +71,24 @@ export class Out {
     }
   }
 
+  /** Writes the text where the model came from; a page without a folder gives it to the browser. */
+  async save_text(): Promise<void> {
+    const { name } = this.studio.history.now;
+    if (this.studio.hello?.home === 'program') await this.write({ path: name });
+    else this.download_text();
+  }
+
+  /** Opens a file of the person's: its text takes the place of the model. */
+  async open_file(file: File): Promise<void> {
+    if (file.size > 4_000_000) this.studio.say(`${file.name} is too large for a model: it has more than 4 MB.`);
+    else this.open({ name: file.name, text: (await file.text()).replace(/\r\n?/g, '\n') });
+  }
+
+  private download_text(): void {
+    const { name, text } = this.studio.history.now;
+    this.give(name.replace(/^.*[\\/]/, ''), new TextEncoder().encode(text));
+  }
+
   /** The address of this page with the model in it, without the secret that the program gave the page. */
   async copy_link(): Promise<void> {
     const elsewhere = document.querySelector<HTMLMetaElement>('meta[name="graftal-site"]')?.content;
@@ -73,7 +99,11 @@ export class Out {
   async file(file: SentFile): Promise<void> {
     const bytes = await inflate(file.deflated);
     const name = new TextDecoder().decode(bytes.subarray(0, file.name_bytes));
-    const address = URL.createObjectURL(new Blob([bytes.subarray(file.name_bytes) as BlobPart]));
+    this.give(name, bytes.subarray(file.name_bytes));
+  }
+
+  private give(name: string, bytes: Uint8Array): void {
+    const address = URL.createObjectURL(new Blob([bytes as BlobPart]));
     element('a', { href: address, download: name }).click();
     setTimeout(() => URL.revokeObjectURL(address), 60_000);
     this.studio.say(`Saved ${name}.`);
@@ -104,8 +134,12 @@ export class Out {
 
   private async write(fields: object): Promise<void> {
     this.studio.say('Working on the file…');
-    const { path } = await this.studio.session.ask('write', fields);
-    if (path) this.studio.say(`Saved ${String(path)}.`);
+    try {
+      const { path } = await this.studio.session.ask('write', fields);
+      if (path) this.studio.say(`Saved ${String(path)}.`);
+    } catch (error) {
+      this.studio.say((error as Error).message);
+    }
   }
 
   private async copy(text: string, what: string): Promise<void> {

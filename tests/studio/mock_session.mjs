@@ -198,7 +198,7 @@ function maps_of(state) {
     return {
       name, object: 'fern', matrix, box: { least: [-2.5, 0, 0], most: [2.7, 10, 0] }, contraction: Math.hypot(matrix[1], matrix[5]),
       from: found.index, to: found.index + whole.length, movable: name !== 'stem', why: name === 'stem' ? 'Its scale is one of a table.' : undefined,
-      follows: names.filter((other) => followed.length === 0 || followed.includes(`${name} ${other}`)),
+      follows: names.length > 24 ? undefined : names.filter((other) => followed.length === 0 || followed.includes(`${name} ${other}`)),
     };
   });
 }

@@ -3,16 +3,22 @@ import { element } from './dom';
 import type { Edit, ModelMap } from './protocol';
 import type { Studio } from './studio';
 
+const most_maps = 24;
+
 export class Digraph {
   readonly element = element('div', { class: 'digraph' });
 
   constructor(private readonly studio: Studio) {}
 
-  show(): void {
-    const maps = (this.studio.model?.maps ?? []).filter(({ follows }) => follows);
+  private shown = false;
+
+  show(shown = this.shown): void {
+    this.shown = shown;
+    const all = shown ? (this.studio.model?.maps ?? []) : [];
+    const maps = all.length <= most_maps ? all.filter(({ follows }) => follows) : [];
     const focus = (document.activeElement as HTMLElement | null)?.dataset?.['edge'];
     this.element.replaceChildren();
-    if (maps.length < 2 || maps.length > 24) return;
+    if (maps.length < 2) return;
     const names = maps.map(({ name }) => name);
     this.element.append(
       element('h2', {}, 'Which map may follow which'),

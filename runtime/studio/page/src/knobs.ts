@@ -11,6 +11,8 @@ interface Row {
   write: HTMLButtonElement | null;
 }
 
+/** A model may have thousands of parameters: the page stays quick, and shows the first. */
+const most_shown = 64;
 const groups: [Parameter['kind'], string][] = [['let', 'Values'], ['inner', 'Inner values'], ['setting', 'Settings']];
 
 export class Knobs {
@@ -22,12 +24,12 @@ export class Knobs {
 
   show(): void {
     const { model, history } = this.studio;
-    const parameters = model?.parameters ?? [];
+    const all = model?.parameters ?? [], parameters = all.slice(0, most_shown);
     // Rows stay while the same parameters are there: a drag must not lose its slider.
-    const shape = JSON.stringify(parameters.map(({ name, kind, literal }) => [name, kind, Boolean(literal)]));
+    const shape = JSON.stringify([all.length, parameters.map(({ name, kind, literal }) => [name, kind, Boolean(literal)])]);
     if (shape !== this.shape || !this.rows.size) {
       this.shape = shape;
-      this.build(parameters);
+      this.build(parameters, all.length - parameters.length);
     }
     for (const parameter of parameters) {
       const row = this.rows.get(parameter.name)!;
@@ -49,13 +51,14 @@ export class Knobs {
     return typeof value === 'number' ? value : null;
   }
 
-  private build(parameters: Parameter[]): void {
+  private build(parameters: Parameter[], more: number): void {
     this.rows.clear();
     this.element.replaceChildren();
     for (const [kind, title] of groups) {
       const mine = parameters.filter((parameter) => parameter.kind === kind);
       if (mine.length) this.element.append(element('h2', {}, title), ...mine.map((parameter) => this.parameter_row(parameter)));
     }
+    if (more > 0) this.element.append(element('p', { class: 'note' }, `and ${more} more`));
     this.element.append(
       element('h2', {}, 'Growth and chance'),
       this.choice_row('steps', 'Steps'),

@@ -182,10 +182,12 @@ class Page implements Studio, Listener {
 
   private show(): void {
     this.session.show(this.history.now, this.size);
+    this.tell_done();
   }
 
   private tab(id: string): void {
     this.maps.show(id === 'maps');
+    this.digraph.show(id === 'maps');
     this.vary.show(id === 'vary');
     if (id !== 'time') this.time.stop();
     if (id === 'out') void this.out.show();

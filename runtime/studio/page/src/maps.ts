@@ -5,6 +5,8 @@ import { latest, type Studio } from './studio';
 import type { Box, Camera, Edit, Matrix, ModelMap, Vec3 } from './protocol';
 import { about, add, column, compose, corner, cross, dot, dragged, length, map_point, matrix_of, middle, projected, subtract, times, turned, unit, view_of } from './vectors';
 
+/** A model may have thousands of maps: the page stays quick, and shows the first. */
+const most_shown = 64;
 const hues = [212, 28, 145, 275, 350, 60, 185, 320];
 
 interface Wish {
@@ -25,6 +27,12 @@ export class Maps {
     private readonly overlay: SVGSVGElement, private readonly studio: Studio, private readonly pick: (event: PointerEvent) => void,
   ) {
     this.ask = latest((wish) => this.ask_now(wish));
+    // The overlay holds the pointer: its shapes are made anew while they are dragged.
+    draggable(overlay, (event) => {
+      const name = (event.target as Element).closest<SVGElement>('[data-of]')?.dataset['of'];
+      const { model } = studio, map = model?.maps.find((one) => one.name === name);
+      return map ? this.begin(event, map, flat_axis(model!.box)) : null;
+    });
   }
 
   private shown = false;
@@ -45,41 +53,30 @@ export class Maps {
 
   draw(): void {
     const { model, camera, history, size } = this.studio;
-    const maps = model?.maps ?? [], zoomed = history.now.at !== null || history.now.zoom !== null;
-    const visible = this.shown && camera !== null && !zoomed && maps.length > 0;
-    this.overlay.classList.toggle('shown', visible);
-    this.draw_list(maps, zoomed);
-    if (!visible) {
+    if (!this.shown) {
+      this.overlay.replaceChildren();
+      return;
+    }
+    const all = model?.maps ?? [], maps = all.slice(0, most_shown), zoomed = history.now.at !== null || history.now.zoom !== null;
+    this.draw_list(maps, all.length - maps.length, zoomed);
+    if (camera === null || zoomed || maps.length === 0) {
       this.overlay.replaceChildren();
       return;
     }
     this.overlay.setAttribute('viewBox', `0 0 ${size.width_px} ${size.height_px}`);
     const focus = (document.activeElement as SVGElement | null)?.dataset?.['map'];
     const flat = flat_axis(model!.box);
-    // While a handle is held, its element must stay: only the shapes change.
     // Small boxes lie on large ones, and the handles of the chosen one on all.
     const size_of = (map: ModelMap) => length(subtract(map.box.most, map.box.least)) * map.contraction;
     const chosen = maps.findIndex(({ name }) => name === this.chosen);
     const boxes = maps.map((map, i) => ({ map, made: this.box(map, i, camera, flat) }))
       .sort((a, b) => size_of(b.map) - size_of(a.map)).map(({ made }) => made);
     if (chosen >= 0) boxes.push(this.handles(maps[chosen]!, chosen, camera, flat));
-    if (!this.dragging) {
-      this.overlay.replaceChildren(...boxes);
-      if (focus) this.overlay.querySelector<SVGElement>(`[data-map="${CSS.escape(focus)}"]`)?.focus();
-      return;
-    }
-    [...this.overlay.children].forEach((old, i) => {
-      const fresh = boxes[i];
-      if (!fresh) return;
-      old.setAttribute('class', fresh.getAttribute('class')!);
-      [...old.children].forEach((shape, at) => {
-        const model_shape = fresh.children[at];
-        if (model_shape) for (const { name, value } of model_shape.attributes) shape.setAttribute(name, value);
-      });
-    });
+    this.overlay.replaceChildren(...boxes);
+    if (focus) this.overlay.querySelector<SVGElement>(`[data-map="${CSS.escape(focus)}"]`)?.focus();
   }
 
-  private draw_list(maps: ModelMap[], zoomed: boolean): void {
+  private draw_list(maps: ModelMap[], more: number, zoomed: boolean): void {
     const focus = (document.activeElement as HTMLElement | null)?.dataset?.['listed'];
     this.list.replaceChildren(...maps.map((map, i) => {
       const why = this.refused.get(map.name) ?? (map.movable ? '' : map.why ?? 'Its text cannot be rewritten.');
@@ -95,6 +92,7 @@ export class Maps {
         }, map.name),
         element('span', { class: 'note' }, why || `shrinks to ${plain_share(map.contraction)}`));
     }));
+    if (more > 0) this.list.append(element('li', { class: 'note' }, `and ${more} more`));
     if (!maps.length) this.list.append(element('li', { class: 'note' }, 'This model has no maps. Models of the language .rifs have them.'));
     else if (zoomed) this.list.append(element('li', { class: 'note' }, 'The boxes show in the whole view: press 0 on the picture.'));
     if (focus) this.list.querySelector<HTMLElement>(`[data-listed="${CSS.escape(focus)}"]`)?.focus();
@@ -110,7 +108,7 @@ export class Maps {
     const at = (point: Vec3) => projected(camera, width_px, height_px, map_point(matrix, point));
     const bad = this.refused.has(map.name);
     const group = svg('g', {
-      class: `map${bad ? ' bad' : ''}${map.movable ? '' : ' fixed'}${this.chosen === map.name ? ' chosen' : ''}`,
+      'data-of': map.name, class: `map${bad ? ' bad' : ''}${map.movable ? '' : ' fixed'}${this.chosen === map.name ? ' chosen' : ''}`,
       style: `--hue:${hues[index % hues.length]}`, tabindex: 0, role: 'button', 'data-map': map.name,
       'aria-label': `Map ${map.name}. Arrow keys move it, with Shift they turn and scale it.`,
     });
@@ -133,14 +131,13 @@ export class Maps {
       this.draw();
     });
     group.addEventListener('keydown', (event) => this.key(event as KeyboardEvent, map));
-    draggable(group, (event) => this.begin(event, map, flat));
     return group;
   }
 
   private handles(map: ModelMap, index: number, camera: Camera, flat: number | null): SVGGElement {
     const { width_px, height_px } = this.studio.size, matrix = this.matrix_of(map), { box } = map, scale = this.px_scale();
     const at = (point: Vec3) => projected(camera, width_px, height_px, map_point(matrix, point));
-    const group = svg('g', { class: `handles${this.refused.has(map.name) ? ' bad' : ''}`, style: `--hue:${hues[index % hues.length]}` });
+    const group = svg('g', { 'data-of': map.name, class: `handles${this.refused.has(map.name) ? ' bad' : ''}`, style: `--hue:${hues[index % hues.length]}` });
     if (!map.movable) return group;
     const corners = corner_bits(flat).map((bit) => [bit, at(corner(box, bit))] as const);
     for (const axis of [0, 1, 2].filter((one) => one !== flat)) {
@@ -157,7 +154,6 @@ export class Maps {
         class: 'handle corner', 'data-handle': `corner ${bit}`, x: place[0] - 5.5 * scale, y: place[1] - 5.5 * scale, width: 11 * scale, height: 11 * scale,
       }));
     }
-    draggable(group, (event) => this.begin(event, map, flat));
     const seen = corners.map(([, place]) => place).filter((p): p is [number, number] => p !== null), centre = at(middle(box));
     if (!seen.length || !centre) return group;
     const top = Math.min(...seen.map(([, y]) => y));

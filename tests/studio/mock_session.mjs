@@ -192,16 +192,19 @@ function maps_of(state) {
     } else {
       const scale = (/scale (<[^>]*>|\S+)/.exec(body)?.[1] ?? '1').replace(/[<>]/g, '').split(',').map((w) => number(w.trim()));
       const angle = (number(/rotate (\S+)/.exec(body)?.[1] ?? '0') * Math.PI) / 180, [sx, sy = scale[0]] = scale;
-      const [x = 0, y = 0] = (/translate <([^>]*)>/.exec(body)?.[1] ?? '0,0').split(',').map((w) => number(w.trim()));
-      matrix = [sx * Math.cos(angle), -sy * Math.sin(angle), 0, x, sx * Math.sin(angle), sy * Math.cos(angle), 0, y, 0, 0, sx, 0];
+      const [x = 0, y = 0, z = 0] = (/translate <([^>]*)>/.exec(body)?.[1] ?? '0,0').split(',').map((w) => number(w.trim()));
+      matrix = [sx * Math.cos(angle), -sy * Math.sin(angle), 0, x, sx * Math.sin(angle), sy * Math.cos(angle), 0, y, 0, 0, sx, z];
     }
     return {
-      name, object: 'fern', matrix, box: { least: [-2.5, 0, 0], most: [2.7, 10, 0] }, contraction: Math.hypot(matrix[1], matrix[5]),
+      name, object: 'fern', matrix, box: box_of(state), contraction: Math.hypot(matrix[1], matrix[5]),
       from: found.index, to: found.index + whole.length, movable: name !== 'stem', why: name === 'stem' ? 'Its scale is one of a table.' : undefined,
       follows: names.length > 24 ? undefined : names.filter((other) => followed.length === 0 || followed.includes(`${name} ${other}`)),
     };
   });
 }
+
+const is_solid = ({ text }) => text.includes('solid');
+const box_of = (state) => (is_solid(state) ? { least: [-1, -1, -1], most: [1, 1, 1] } : { least: [-2.5, 0, 0], most: [2.7, 10, 0] });
 
 function model_of(state) {
   const parameters = [...state.text.matchAll(/^\s*let (\w+) = (\S+)/gm)].map((found) => {
@@ -209,8 +212,9 @@ function model_of(state) {
     return { name: found[1], value: values_of(state)[found[1]], least: null, most: null, literal: true, from, to: from + found[2].length, kind: 'let' };
   });
   return {
-    parameters, camera: state.camera ?? { location: [0.1, 5, 17], look_at: [0.1, 5, 0], up: [0, 1, 0], angle_deg: 60 },
-    box: { least: [-2.5, 0, 0], most: [2.7, 10, 0] }, stats: { steps: 12, seed: 1 }, maps: maps_of(state),
+    parameters, box: box_of(state),
+    camera: state.camera ?? (is_solid(state) ? { location: [2.4, 1.8, 4], look_at: [0, 0, 0], up: [0, 1, 0], angle_deg: 45 }
+      : { location: [0.1, 5, 17], look_at: [0.1, 5, 0], up: [0, 1, 0], angle_deg: 60 }), stats: { steps: 12, seed: 1 }, maps: maps_of(state),
   };
 }
 

@@ -275,6 +275,34 @@ await test('a map is dragged by its corner; a map that would grow is red', async
   assert.match(hand.last().text, /follow left -> right/);
 });
 
+const solid = `rifs solid {
+  map a { scale 0.5  translate <-0.5, -0.5, -0.5> }
+  map b { scale 0.5  translate <0.5, -0.5, -0.5> }
+  map c { scale 0.5  translate <-0.5, 0.5, -0.5> }
+  map d { scale 0.5  translate <0.5, 0.5, 0.5> }
+}
+`;
+await test('a box in space is moved, turned and sheared', async (hand, page) => {
+  const matrix = (name) => new RegExp(`map ${name} { matrix ([^}]*)}`).exec(hand.last().text)[1].split(',').map(Number);
+  await page.click('#tab-maps');
+  await page.focus('[data-map=d]');
+  assert.equal(await page.locator('.handle.corner').count(), 8);
+  assert.equal(await page.locator('.handle.edge').count(), 6);
+  const face = await page.locator('[data-map=d] .face').boundingBox();
+  await hand.changes(() => hand.drag([face.x + face.width * 0.3, face.y + face.height * 0.5], 30, -20));
+  const moved = matrix('d');
+  assert.deepEqual([moved[0], moved[5], moved[10]], [0.5, 0.5, 0.5]);
+  assert.ok(moved[3] > 0.5 && moved[7] > 0.5, `${moved}`);
+  await hand.changes(async () => hand.drag(await hand.place_of('.handle.turn'), 30, 5));
+  const turned = matrix('d'), column = (m, c) => Math.hypot(m[c], m[4 + c], m[8 + c]);
+  for (const c of [0, 1, 2]) assert.ok(Math.abs(column(turned, c) - 0.5) < 1e-3, `${turned}`);
+  assert.ok(Math.abs(turned[1]) > 0.02);
+  await hand.changes(async () => hand.drag(await hand.place_of('.handle.edge >> nth=3'), 12, 4));
+  const sheared = matrix('d');
+  for (const c of [0, 2]) assert.ok(Math.abs(column(sheared, c) - 0.5) < 2e-3, `${sheared}`);
+  assert.ok(Math.hypot(...[1, 5, 9].map((i) => sheared[i] - turned[i])) > 0.01, `${turned} ${sheared}`);
+}, { opened: { name: 'solid.rifs', text: solid } });
+
 await test('a click on the picture selects its rule; the point is pulled', async (hand, page) => {
   const [x, y] = await hand.place_of('#view');
   await page.mouse.click(x + 5, y - 40);

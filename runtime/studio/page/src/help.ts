@@ -37,11 +37,11 @@ const parts: [string, [string, string][]][] = [
 
 export function fill_help(dialog: HTMLDialogElement): void {
   dialog.append(
-    element('h2', { id: 'help-title' }, 'Hands and keys'),
-    ...parts.map(([title, rows]) => element('section', {}, element('h3', {}, title),
-      element('dl', {}, ...rows.flatMap(([keys, does]) => [element('dt', {}, keys), element('dd', {}, does)])))),
-    element('p', { class: 'note' }, 'The editor is CodeMirror: ', element('a', { href: 'licences.html', target: '_blank' }, 'licences'), '.'),
     element('button', { type: 'button', class: 'quiet', onclick: () => dialog.close() }, 'Close'),
+    element('h2', { id: 'help-title' }, 'Hands and keys'),
+    element('div', {}, ...parts.map(([title, rows]) => element('section', {}, element('h3', {}, title),
+      element('dl', {}, ...rows.flatMap(([keys, does]) => [element('dt', {}, keys), element('dd', {}, does)]))))),
+    element('p', { class: 'note' }, 'The editor is CodeMirror: ', element('a', { href: 'licences.html', target: '_blank' }, 'licences'), '.'),
   );
   dialog.addEventListener('click', (event) => event.target === dialog && dialog.close());
 }

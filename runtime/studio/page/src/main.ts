@@ -1,6 +1,6 @@
 // The page: it joins the text, the picture and the tools by one history and one session.
 import { Digraph } from './digraph';
-import { by_id, element, soon, svg } from './dom';
+import { by_id, element, soon } from './dom';
 import { Divider } from './divider';
 import { Editor } from './editor';
 import { fill_help } from './help';
@@ -65,12 +65,10 @@ class Page implements Studio, Listener {
       this.view.painted(number);
       this.tell_done();
     });
-    const overlay = by_id('overlay') as unknown as SVGSVGElement;
-    const maps_layer = svg('svg', { class: 'layer' }), point_layer = svg('svg', { class: 'layer' });
-    overlay.append(maps_layer, point_layer);
-    this.maps = new Maps(maps_layer, this, (event) => void this.point.pick(...this.view.at(event)));
+    const layer = (id: string) => by_id(id) as unknown as SVGSVGElement;
+    this.maps = new Maps(layer('maps-layer'), this, (event) => void this.point.pick(...this.view.at(event)));
     this.digraph = new Digraph(this);
-    this.point = new PointTool(point_layer, by_id('picked'), this);
+    this.point = new PointTool(layer('point-layer'), by_id('picked'), this);
     this.view = new ViewControl(by_id('view'), this.picture.canvas, this, (x, y) => void this.point.pick(x, y));
     this.editor = new Editor(by_id('editor'), this);
     this.knobs = new Knobs(this);

@@ -20,14 +20,18 @@ install_packages() {
         DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -qq -y --no-install-recommends "${missing[@]}" >&2
 }
 
-# Installs what tests/grammar needs of npm, into build/npm.
+# install_npm_packages LIST FOLDER: installs what the package-lock.json of the folder LIST names into FOLDER, from npm's cache where
+# it can. Does nothing if that is there.
 install_npm_packages() {
-    local wanted=$root/tests/grammar/package-lock.json folder=$root/build/npm
+    local wanted=$1/package-lock.json folder=$2
     cmp -s "$wanted" "$folder/package-lock.json" && [[ -d $folder/node_modules ]] && return 0
     mkdir -p "$folder"
-    cp "${wanted%-lock.json}.json" "$folder"
-    cp "$wanted" "$folder"
-    npm ci --prefix "$folder" --ignore-scripts --no-audit --no-fund --loglevel error >&2
+    rm -f "$folder/package-lock.json"
+    cp "$1/package.json" "$folder"
+    # The lock comes last into its place: an installation that was interrupted begins again.
+    cp "$wanted" "$folder/npm-shrinkwrap.json"
+    npm ci --prefix "$folder" --ignore-scripts --no-audit --no-fund --prefer-offline --loglevel error >&2 || return
+    mv "$folder/npm-shrinkwrap.json" "$folder/package-lock.json"
 }
 
 # Where ccache is installed, CMake is to use it.

@@ -1,0 +1,28 @@
+// Motions of a camera: each gives a new one.
+import type { Camera } from './protocol';
+import { add, dot, subtract, times, turned, unit, units_of_pixel, view_of } from './vectors';
+
+/** Around the point that it looks at: by so much to the right and up, in radians. It never turns over. */
+export function orbited(camera: Camera, right_rad: number, up_rad: number): Camera {
+  const pole = unit(camera.up), view = view_of(camera);
+  const height_rad = Math.asin(Math.max(-1, Math.min(1, -dot(view.into, pole))));
+  const most_rad = 1.55;
+  const rise_rad = Math.max(-most_rad, Math.min(most_rad, height_rad + up_rad)) - height_rad;
+  let arm = subtract(camera.location, camera.look_at);
+  arm = turned(arm, view.right, -rise_rad);
+  arm = turned(arm, pole, -right_rad);
+  return { ...camera, location: add(camera.look_at, arm) };
+}
+
+/** Sideways, so that what lies at the point it looks at follows the pointer. */
+export function panned(camera: Camera, dx_px: number, dy_px: number, width_px: number): Camera {
+  const view = view_of(camera), unit_of_px = units_of_pixel(camera, width_px);
+  const by = add(times(view.right, -dx_px * unit_of_px), times(view.up, dy_px * unit_of_px));
+  return { ...camera, location: add(camera.location, by), look_at: add(camera.look_at, by) };
+}
+
+/** Nearer to the point that it looks at, `factor` times. Parallel rays draw together. */
+export function dollied(camera: Camera, factor: number): Camera {
+  if (camera.width) return { ...camera, width: camera.width / factor };
+  return { ...camera, location: add(camera.look_at, times(subtract(camera.location, camera.look_at), 1 / factor)) };
+}

@@ -1,0 +1,47 @@
+// The page of help: what hands and keys do.
+import { element } from './dom';
+
+const parts: [string, [string, string][]][] = [
+  ['Picture', [
+    ['drag, or arrow keys', 'orbit'],
+    ['Shift and drag, or Shift and arrow keys', 'pan'],
+    ['Ctrl and drag, or Page Up and Page Down', 'move the camera nearer and farther'],
+    ['wheel, two fingers, or + and −', 'zoom, without an end'],
+    ['0', 'show the whole model'],
+    ['click', 'select the rule in the text'],
+  ]],
+  ['Text', [
+    ['drag a number', 'change it; with Shift finer; with Alt select text'],
+    ['click on a swatch', 'choose a colour'],
+    ['Ctrl+Space', 'complete a word'],
+    ['F12, or Ctrl and click', 'go to the definition'],
+    ['F2', 'rename'],
+    ['Shift+Alt+F', 'format'],
+    ['Escape, then Tab', 'leave the text'],
+  ]],
+  ['Knobs', [
+    ['drag, or arrow keys', 'change; with Shift finer'],
+    ['double click on a number, or Enter', 'type it'],
+  ]],
+  ['Maps', [
+    ['drag a box', 'move the map'],
+    ['corner, edge, knob', 'scale; stretch and shear; turn'],
+    ['arrow keys', 'move; with Shift turn and scale'],
+  ]],
+  ['Everywhere', [
+    ['Ctrl+Z, Ctrl+Shift+Z', 'undo and redo: text, knobs and camera'],
+    ['Ctrl+S', 'save the text'],
+    ['F6', 'go from the text to the picture to the tools'],
+  ]],
+];
+
+export function fill_help(dialog: HTMLDialogElement): void {
+  dialog.append(
+    element('button', { type: 'button', class: 'quiet', onclick: () => dialog.close() }, 'Close'),
+    element('h2', { id: 'help-title' }, 'Hands and keys'),
+    element('div', {}, ...parts.map(([title, rows]) => element('section', {}, element('h3', {}, title),
+      element('dl', {}, ...rows.flatMap(([keys, does]) => [element('dt', {}, keys), element('dd', {}, does)]))))),
+    element('p', { class: 'note' }, 'The editor is CodeMirror: ', element('a', { href: 'licences.html', target: '_blank' }, 'licences'), '.'),
+  );
+  dialog.addEventListener('click', (event) => event.target === dialog && dialog.close());
+}

@@ -1,0 +1,127 @@
+// A slider for each parameter of the model, and for its steps and its seed.
+import { element } from './dom';
+import type { Parameter } from './protocol';
+import { Slider } from './slider';
+import type { Studio } from './studio';
+
+interface Row {
+  slider: Slider;
+  element: HTMLElement;
+  reset: HTMLButtonElement;
+  write: HTMLButtonElement | null;
+}
+
+/** A model may have thousands of parameters: the page stays quick, and shows the first. */
+const most_shown = 64;
+const groups: [Parameter['kind'], string][] = [['let', 'Values'], ['inner', 'Inner values'], ['setting', 'Settings']];
+
+export class Knobs {
+  readonly element = element('div', { class: 'knobs' });
+  private readonly rows = new Map<string, Row>();
+  private shape = '';
+
+  constructor(private readonly studio: Studio) {}
+
+  show(): void {
+    const { model, history } = this.studio;
+    const all = model?.parameters ?? [], parameters = all.slice(0, most_shown);
+    // Rows stay while the same parameters are there: a drag must not lose its slider.
+    const shape = JSON.stringify([all.length, parameters.map(({ name, kind, literal }) => [name, kind, Boolean(literal)])]);
+    if (shape !== this.shape || !this.rows.size) {
+      this.shape = shape;
+      this.build(parameters, all.length - parameters.length);
+    }
+    for (const parameter of parameters) {
+      const row = this.rows.get(parameter.name)!;
+      const [least, most] = range_of(parameter);
+      const { set } = history.now, changed = parameter.name in set;
+      row.slider.show(changed ? set[parameter.name]! : parameter.value, least, most);
+      row.reset.disabled = !changed;
+      if (row.write) row.write.disabled = !changed;
+    }
+    for (const key of ['steps', 'seed'] as const) {
+      const row = this.rows.get(`: ${key}`)!, chosen = history.now[key], own = this.model_value(key), value = chosen ?? own ?? 0;
+      row.slider.show(value, 0, Math.max(key === 'steps' ? 12 : 100, 2 * (own ?? 0)), chosen === null && own === null ? '–' : undefined);
+      row.reset.disabled = chosen === null;
+    }
+  }
+
+  private model_value(key: 'steps' | 'seed'): number | null {
+    const stats = this.studio.model?.stats, value = stats && typeof stats === 'object' ? stats[key] : null;
+    return typeof value === 'number' ? value : null;
+  }
+
+  private build(parameters: Parameter[], more: number): void {
+    this.rows.clear();
+    this.element.replaceChildren();
+    for (const [kind, title] of groups) {
+      const mine = parameters.filter((parameter) => parameter.kind === kind);
+      if (mine.length) this.element.append(element('h2', {}, title), ...mine.map((parameter) => this.parameter_row(parameter)));
+    }
+    if (more > 0) this.element.append(element('p', { class: 'note' }, `and ${more} more`));
+    this.element.append(
+      element('h2', {}, 'Growth and chance'),
+      this.choice_row('steps', 'Steps'),
+      this.choice_row('seed', 'Seed'),
+    );
+  }
+
+  private parameter_row(parameter: Parameter): HTMLElement {
+    const { name } = parameter, [least, most] = range_of(parameter), { history } = this.studio;
+    const slider = new Slider({
+      label: name, value: parameter.value, least, most, whole: is_whole(parameter, history.now.text) ? 'coarse' : null,
+      change: (value, done) => {
+        this.studio.change({ set: { ...history.now.set, [name]: value } }, `set ${name}`);
+        if (done) history.end_step();
+      },
+    });
+    const reset = this.small('↺', `Reset ${name}`, () => {
+      const { [name]: _, ...set } = history.now.set;
+      this.studio.change({ set });
+    });
+    const write = !parameter.literal || parameter.from === undefined ? null
+      : this.small('Write', `Write ${name} into the text`, () => this.write(name));
+    return this.row(name, name, slider, reset, write);
+  }
+
+  /** Puts the number of a knob into the text in place of the one that stands there. */
+  private write(name: string): void {
+    const parameter = this.studio.model?.parameters.find((one) => one.name === name);
+    const { set: { [name]: value, ...set }, text } = this.studio.history.now;
+    if (!parameter || parameter.from === undefined || parameter.to === undefined || value === undefined) return;
+    this.studio.change({ set, text: text.slice(0, parameter.from) + String(value) + text.slice(parameter.to) });
+  }
+
+  private choice_row(key: 'steps' | 'seed', label: string): HTMLElement {
+    const slider = new Slider({
+      label, value: 0, least: 0, most: 1, whole: 'always',
+      change: (value, done) => {
+        this.studio.change({ [key]: Math.max(0, value) }, `set ${key}`);
+        if (done) this.studio.history.end_step();
+      },
+    });
+    const reset = this.small('↺', `Reset ${label.toLowerCase()}`, () => this.studio.change({ [key]: null }));
+    return this.row(`: ${key}`, label, slider, reset, null);
+  }
+
+  private small(text: string, label: string, act: () => void): HTMLButtonElement {
+    return element('button', { type: 'button', class: 'small', 'aria-label': label, title: label, onclick: act }, text);
+  }
+
+  private row(key: string, label: string, slider: Slider, reset: HTMLButtonElement, write: HTMLButtonElement | null): HTMLElement {
+    const made = element('div', { class: 'knob' }, element('span', { class: 'name', title: label }, label), slider.range, slider.number, reset, write);
+    this.rows.set(key, { slider, element: made, reset, write });
+    return made;
+  }
+}
+
+/** Whether the text writes a parameter without a decimal point. */
+function is_whole({ kind, literal, from, to }: Parameter, text: string): boolean {
+  return kind !== 'inner' && Boolean(literal) && from !== undefined && /^\d+$/.test(text.slice(from, to));
+}
+
+/** The range of a parameter: its own, or one around its value. */
+function range_of({ value, least, most }: Parameter): [number, number] {
+  const far = value === 0 ? 1 : 2 * Math.abs(value);
+  return [least ?? (value < 0 ? -far : 0), most ?? Math.max(far, (least ?? 0) + far)];
+}

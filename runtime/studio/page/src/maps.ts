@@ -1,0 +1,333 @@
+// The maps of the model as boxes over the picture, with handles: the box moves, a corner scales, an edge stretches and
+// shears, the knob turns. The text follows by the ask `map`.
+import { element, draggable, svg, type Drag } from './dom';
+import { latest, type Studio } from './studio';
+import type { Box, Camera, Edit, Matrix, ModelMap, Vec3 } from './protocol';
+import { about, add, column, compose, corner, cross, dot, dragged, length, map_point, matrix_of, middle, projected, subtract, times, turned, unit, view_of } from './vectors';
+
+/** A model may have thousands of maps: the page stays quick, and shows the first. */
+const most_shown = 64;
+const hues = [212, 28, 145, 275, 350, 60, 185, 320];
+
+interface Wish {
+  map: ModelMap;
+  matrix: Matrix;
+}
+
+export class Maps {
+  readonly list = element('ul', { class: 'maps' });
+  /** Matrices that a drag has reached before the session answered, by name. */
+  private readonly ahead = new Map<string, Matrix>();
+  private readonly refused = new Map<string, string>();
+  private chosen: string | null = null;
+  private dragging = false;
+  private readonly ask: (wish: Wish) => void;
+
+  constructor(
+    private readonly overlay: SVGSVGElement, private readonly studio: Studio, private readonly pick: (event: PointerEvent) => void,
+  ) {
+    this.ask = latest((wish) => this.ask_now(wish));
+    // The overlay holds the pointer: its shapes are made anew while they are dragged.
+    draggable(overlay, (event) => {
+      const name = (event.target as Element).closest<SVGElement>('[data-of]')?.dataset['of'];
+      const { model } = studio, map = model?.maps.find((one) => one.name === name);
+      return map ? this.begin(event, map, flat_axis(model!.box)) : null;
+    });
+  }
+
+  private shown = false;
+
+  show(shown: boolean): void {
+    this.shown = shown;
+    this.draw();
+  }
+
+  /** A new model came: what it says holds, except under the hand of a drag. */
+  model_came(): void {
+    if (!this.dragging) {
+      this.ahead.clear();
+      this.refused.clear();
+    }
+    this.draw();
+  }
+
+  draw(): void {
+    const { model, camera, history, size } = this.studio;
+    if (!this.shown) {
+      this.overlay.replaceChildren();
+      return;
+    }
+    const all = model?.maps ?? [], maps = all.slice(0, most_shown), zoomed = history.now.at !== null || history.now.zoom !== null;
+    this.draw_list(maps, all.length - maps.length, zoomed);
+    if (camera === null || zoomed || maps.length === 0) {
+      this.overlay.replaceChildren();
+      return;
+    }
+    this.overlay.setAttribute('viewBox', `0 0 ${size.width_px} ${size.height_px}`);
+    const focus = (document.activeElement as SVGElement | null)?.dataset?.['map'];
+    const flat = flat_axis(model!.box);
+    // Small boxes lie on large ones, and the handles of the chosen one on all.
+    const size_of = (map: ModelMap) => length(subtract(map.box.most, map.box.least)) * map.contraction;
+    const chosen = maps.findIndex(({ name }) => name === this.chosen);
+    const boxes = maps.map((map, i) => ({ map, made: this.box(map, i, camera, flat) }))
+      .sort((a, b) => size_of(b.map) - size_of(a.map)).map(({ made }) => made);
+    if (chosen >= 0) boxes.push(this.handles(maps[chosen]!, chosen, camera, flat));
+    this.overlay.replaceChildren(...boxes);
+    if (focus) this.overlay.querySelector<SVGElement>(`[data-map="${CSS.escape(focus)}"]`)?.focus();
+  }
+
+  private draw_list(maps: ModelMap[], more: number, zoomed: boolean): void {
+    const focus = (document.activeElement as HTMLElement | null)?.dataset?.['listed'];
+    this.list.replaceChildren(...maps.map((map, i) => {
+      const why = this.refused.get(map.name) ?? (map.movable ? '' : map.why ?? 'Its text cannot be rewritten.');
+      return element('li', { class: why ? 'bad' : '' },
+        element('span', { class: 'dot', style: `--hue:${hues[i % hues.length]}` }),
+        element('button', {
+          type: 'button', class: 'link', 'data-listed': map.name,
+          onclick: () => {
+            this.chosen = map.name;
+            this.studio.select(map.from, map.to);
+            this.draw();
+          },
+        }, map.name),
+        element('span', { class: 'note' }, why || `shrinks to ${plain_share(map.contraction)}`));
+    }));
+    if (more > 0) this.list.append(element('li', { class: 'note' }, `and ${more} more`));
+    if (!maps.length) this.list.append(element('li', { class: 'note' }, 'This model has no maps. Models of the language .rifs have them.'));
+    else if (zoomed) this.list.append(element('li', { class: 'note' }, 'The boxes show in the whole view: press 0 on the picture.'));
+    if (focus) this.list.querySelector<HTMLElement>(`[data-listed="${CSS.escape(focus)}"]`)?.focus();
+  }
+
+  private matrix_of(map: ModelMap): Matrix {
+    return this.ahead.get(map.name) ?? map.matrix;
+  }
+
+  private box(map: ModelMap, index: number, camera: Camera, flat: number | null): SVGGElement {
+    const { width_px, height_px } = this.studio.size, matrix = this.matrix_of(map), { box } = map;
+    const scale = this.px_scale();
+    const at = (point: Vec3) => projected(camera, width_px, height_px, map_point(matrix, point));
+    const bad = this.refused.has(map.name);
+    const group = svg('g', {
+      'data-of': map.name, class: `map${bad ? ' bad' : ''}${map.movable ? '' : ' fixed'}${this.chosen === map.name ? ' chosen' : ''}`,
+      style: `--hue:${hues[index % hues.length]}`, tabindex: 0, role: 'button', 'data-map': map.name,
+      'aria-label': `Map ${map.name}. Arrow keys move it, with Shift they turn and scale it.`,
+    });
+    const bits = corner_bits(flat);
+    const corners = new Map(bits.map((bit) => [bit, at(corner(box, bit))]));
+    const edges = bits.flatMap((bit) => [0, 1, 2].map((axis) => [bit, bit | (1 << axis)] as const))
+      .filter(([a, b]) => a !== b && corners.get(a) && corners.get(b));
+    const path = edges.map(([a, b]) => `M${corners.get(a)!.join(' ')}L${corners.get(b)!.join(' ')}`).join('');
+    const hull = hull_of([...corners.values()].filter((p): p is [number, number] => p !== null));
+    group.append(
+      svg('title', {}, bad ? this.refused.get(map.name)! : map.name),
+      svg('path', { class: 'face', 'data-handle': 'move', d: hull.length ? `M${hull.map((p) => p.join(' ')).join('L')}Z` : '' }),
+      svg('path', { class: 'edges', d: path }),
+    );
+    const centre = at(middle(box));
+    if (centre) group.append(svg('text', { x: centre[0], y: centre[1], 'font-size': 13 * scale }, map.name));
+    group.addEventListener('focus', () => {
+      if (this.chosen === map.name) return;
+      this.chosen = map.name;
+      this.draw();
+    });
+    group.addEventListener('keydown', (event) => this.key(event as KeyboardEvent, map));
+    return group;
+  }
+
+  private handles(map: ModelMap, index: number, camera: Camera, flat: number | null): SVGGElement {
+    const { width_px, height_px } = this.studio.size, matrix = this.matrix_of(map), { box } = map, scale = this.px_scale();
+    const at = (point: Vec3) => projected(camera, width_px, height_px, map_point(matrix, point));
+    const group = svg('g', { 'data-of': map.name, class: `handles${this.refused.has(map.name) ? ' bad' : ''}`, style: `--hue:${hues[index % hues.length]}` });
+    if (!map.movable) return group;
+    const corners = corner_bits(flat).map((bit) => [bit, at(corner(box, bit))] as const);
+    for (const axis of [0, 1, 2].filter((one) => one !== flat)) {
+      for (const side of [0, 1]) {
+        const point = middle(box);
+        point[axis] = (side ? box.most : box.least)[axis]!;
+        const place = at(point);
+        if (place) group.append(svg('circle', { class: 'handle edge', 'data-handle': `edge ${axis} ${side}`, cx: place[0], cy: place[1], r: 5 * scale }));
+      }
+    }
+    for (const [bit, place] of corners) {
+      if (!place) continue;
+      group.append(svg('rect', {
+        class: 'handle corner', 'data-handle': `corner ${bit}`, x: place[0] - 5.5 * scale, y: place[1] - 5.5 * scale, width: 11 * scale, height: 11 * scale,
+      }));
+    }
+    const seen = corners.map(([, place]) => place).filter((p): p is [number, number] => p !== null), centre = at(middle(box));
+    if (!seen.length || !centre) return group;
+    const top = Math.min(...seen.map(([, y]) => y));
+    group.append(
+      svg('path', { class: 'stem', d: `M${centre[0]} ${top}V${top - 26 * scale}` }),
+      svg('circle', { class: 'handle turn', 'data-handle': 'turn', cx: centre[0], cy: top - 26 * scale, r: 6 * scale }),
+    );
+    return group;
+  }
+
+  /** Pixels of the picture in one of the screen. */
+  private px_scale(): number {
+    const { width } = this.overlay.getBoundingClientRect();
+    return width > 0 ? this.studio.size.width_px / width : 1;
+  }
+
+  private begin(event: PointerEvent, map: ModelMap, flat: number | null): Drag | null {
+    const handle = (event.target as Element).getAttribute('data-handle');
+    const { camera, size, history } = this.studio;
+    if (!camera || !handle || event.button !== 0) return null;
+    if (this.chosen !== map.name) {
+      this.chosen = map.name;
+      this.draw();
+    }
+    if (!map.movable) {
+      this.studio.say(map.why ?? 'The text of this map cannot be rewritten.');
+      this.draw();
+      return null;
+    }
+    history.end_step();
+    this.dragging = true;
+    const { width_px, height_px } = size, scale = this.px_scale(), start = this.matrix_of(map);
+    const normal = flat === null ? view_of(camera).into : unit([Number(flat === 0), Number(flat === 1), Number(flat === 2)]);
+    const [kind, first, second] = handle.split(' ');
+    const centre = map_point(start, middle(map.box));
+    const centre_px = projected(camera, width_px, height_px, centre);
+    const bounds = this.overlay.getBoundingClientRect();
+    const place = (one: PointerEvent): [number, number] => [(one.clientX - bounds.left) * scale, (one.clientY - bounds.top) * scale];
+    const down = place(event);
+    return {
+      move: (now) => {
+        const to = place(now), dx = to[0] - down[0], dy = to[1] - down[1];
+        const drag_from = (point: Vec3) => dragged(camera, width_px, point, dx, dy, flat === null ? undefined : normal);
+        let by: Matrix;
+        if (kind === 'move') {
+          by = matrix_of([1, 0, 0], [0, 1, 0], [0, 0, 1], subtract(drag_from(centre), centre));
+        } else if (kind === 'turn' && centre_px) {
+          const angle = (p: [number, number]) => Math.atan2(-(p[1] - centre_px[1]), p[0] - centre_px[0]);
+          const seen_from_front = dot(normal, view_of(camera).into) < 0 ? 1 : -1;
+          let turn_rad = angle(to) - angle(down);
+          if (now.shiftKey) turn_rad = (Math.round((turn_rad * 180) / Math.PI / 15) * 15 * Math.PI) / 180;
+          by = about(centre, (d) => turned(d, normal, turn_rad * seen_from_front));
+        } else if (kind === 'corner') {
+          // The corner across stays; in space that is the middle, for the one across may lie behind.
+          const bit = Number(first), held = map_point(start, corner(map.box, bit));
+          const across = flat === null || now.altKey ? centre : map_point(start, corner(map.box, ~bit & 7 & ~(1 << flat)));
+          const arm = subtract(held, across), reach = subtract(drag_from(held), across);
+          const factor = Math.max(0.02, dot(reach, arm) / (dot(arm, arm) || 1));
+          by = about(across, (d) => times(d, factor));
+        } else if (kind === 'edge') {
+          const axis = Number(first), side = Number(second), still = middle(map.box), held = middle(map.box);
+          still[axis] = (side ? map.box.least : map.box.most)[axis]!;
+          held[axis] = (side ? map.box.most : map.box.least)[axis]!;
+          const moved = subtract(drag_from(map_point(start, held)), map_point(start, held));
+          const extent = held[axis]! - still[axis]!;
+          const columns = [0, 1, 2].map((c) => (c === axis ? add(column(start, c), times(moved, 1 / (extent || 1))) : column(start, c)));
+          const fixed = map_point(start, still);
+          const linear = matrix_of(columns[0]!, columns[1]!, columns[2]!, [0, 0, 0]);
+          this.wish(map, matrix_of(columns[0]!, columns[1]!, columns[2]!, subtract(fixed, map_point(linear, still))));
+          return;
+        } else {
+          return;
+        }
+        this.wish(map, compose(by, start));
+      },
+      end: (up) => {
+        this.dragging = false;
+        if (up.clientX === event.clientX && up.clientY === event.clientY) {
+          this.studio.select(map.from, map.to);
+          this.pick(up);
+        }
+        history.end_step();
+        this.let_go();
+        this.draw();
+      },
+    };
+  }
+
+  /** A map that was refused goes back to where the text has it. */
+  private let_go(): void {
+    for (const name of this.refused.keys()) this.ahead.delete(name);
+    this.refused.clear();
+  }
+
+  private key(event: KeyboardEvent, map: ModelMap): void {
+    const { camera, size } = this.studio;
+    if (!camera || !map.movable || event.ctrlKey || event.metaKey || event.altKey) return;
+    const arrows: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+    const arrow = arrows[event.key];
+    if (!arrow) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const start = this.matrix_of(map), centre = map_point(start, middle(map.box)), flat = flat_axis(this.studio.model!.box);
+    const normal = flat === null ? times(view_of(camera).into, -1) : unit([Number(flat === 0), Number(flat === 1), Number(flat === 2)]);
+    let by: Matrix;
+    if (!event.shiftKey) {
+      const step = 8 * this.px_scale();
+      const moved = dragged(camera, size.width_px, centre, arrow[0] * step, arrow[1] * step, flat === null ? undefined : normal);
+      by = matrix_of([1, 0, 0], [0, 1, 0], [0, 0, 1], subtract(moved, centre));
+    } else if (arrow[0]) {
+      by = about(centre, (d) => turned(d, normal, (-arrow[0] * 5 * Math.PI) / 180));
+    } else {
+      by = about(centre, (d) => times(d, arrow[1] < 0 ? 1.05 : 1 / 1.05));
+    }
+    this.wish(map, compose(by, start));
+  }
+
+  private wish(map: ModelMap, matrix: Matrix): void {
+    this.ahead.set(map.name, matrix);
+    this.draw();
+    this.ask({ map, matrix });
+  }
+
+  private async ask_now({ map, matrix }: Wish): Promise<void> {
+    const { session, history } = this.studio, before = history.now.text;
+    try {
+      const answer = await session.ask('map', { name: map.name, object: map.object, matrix });
+      if (history.now.text !== before) return;
+      if (answer['contracts'] === false) this.refused.set(map.name, String(answer['why'] ?? 'It would not shrink.'));
+      else this.refused.delete(map.name);
+      const edits = answer['edits'] as Edit[] | undefined;
+      if (edits?.length && !this.refused.has(map.name)) this.studio.edit(edits, `map ${map.name}`);
+    } catch (error) {
+      this.refused.set(map.name, (error as Error).message);
+    }
+    const why = this.refused.get(map.name);
+    if (why) this.studio.say(why);
+    if (!this.dragging) this.let_go();
+    this.draw();
+  }
+}
+
+/** The corners of a box, of a flat one those of its face (`corner`). */
+function corner_bits(flat: number | null): number[] {
+  return [0, 1, 2, 3, 4, 5, 6, 7].filter((bit) => flat === null || !(bit & (1 << flat)));
+}
+
+/** The axis along which the model has no depth; null: it is a solid. */
+export function flat_axis(box: Box | null): number | null {
+  if (!box) return null;
+  const extents = subtract(box.most, box.least), most = Math.max(...extents);
+  for (const axis of [2, 0, 1]) if (extents[axis]! <= 1e-6 * most) return axis;
+  return null;
+}
+
+function plain_share(contraction: number): string {
+  return `${(100 * contraction).toFixed(contraction < 0.1 ? 1 : 0)} %`;
+}
+
+/** The convex hull of points, in order. */
+export function hull_of(points: [number, number][]): [number, number][] {
+  const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const half = (from: [number, number][]) => {
+    const kept: [number, number][] = [];
+    for (const p of from) {
+      while (kept.length > 1) {
+        const [a, b] = [kept.at(-2)!, kept.at(-1)!];
+        if (cross([b[0] - a[0], b[1] - a[1], 0], [p[0] - a[0], p[1] - a[1], 0])[2] > 0) break;
+        kept.pop();
+      }
+      kept.push(p);
+    }
+    return kept.slice(0, -1);
+  };
+  return length(subtract([...(sorted[0] ?? [0, 0]), 0] as Vec3, [...(sorted.at(-1) ?? [0, 0]), 0] as Vec3)) === 0
+    ? sorted.slice(0, 1) : [...half(sorted), ...half(sorted.reverse())];
+}

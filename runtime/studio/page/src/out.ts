@@ -1,0 +1,159 @@
+// Ways out: a picture of any size, files for other programs, the command line, a link.
+import { element } from './dom';
+import { choices_of, fragment_of } from './link';
+import { inflate, type Choices, type SentFile } from './protocol';
+import type { Studio } from './studio';
+
+export class Out {
+  readonly element = element('div', {});
+  private readonly width = element('input', { type: 'number', min: 1, max: 65536, 'aria-label': 'Width in pixels' });
+  private readonly height = element('input', { type: 'number', min: 1, max: 65536, 'aria-label': 'Height in pixels' });
+  private readonly picture_kind = element('select', { 'aria-label': 'Kind of picture' },
+    element('option', { value: '.png' }, 'PNG'), element('option', { value: '.exr' }, 'EXR'));
+  private readonly format = element('select', { id: 'format' });
+  private readonly command = element('pre', { tabindex: 0, 'aria-label': 'Command line' });
+  private readonly path = element('input', { type: 'text', id: 'path', placeholder: 'name.png', 'aria-label': 'Name of the picture file', spellcheck: 'false' });
+
+  constructor(private readonly studio: Studio, private readonly open: (choices: Partial<Choices>) => void) {
+    const pasted = element('input', { type: 'text', id: 'pasted', 'aria-label': 'Link to open', placeholder: 'paste a link here' });
+    const link_form = element('form', { class: 'line' }, pasted, element('button', { class: 'quiet' }, 'Open'));
+    link_form.onsubmit = async (event) => {
+      event.preventDefault();
+      const choices = await choices_of(pasted.value);
+      if (choices) this.open(choices);
+      else studio.say('This link holds no model.');
+      pasted.value = '';
+    };
+    const size = (times: number) => element('button', {
+      type: 'button', class: 'small', onclick: () => this.size(times),
+    }, `${times}×`);
+    const file = element('input', { type: 'file', class: 'unseen', tabindex: -1, 'aria-hidden': 'true', accept: '.lsys,.rifs,.inst' });
+    file.onchange = () => void (file.files?.[0] && this.open_file(file.files[0]));
+    this.element.append(
+      element('h2', {}, 'Text'),
+      element('div', { class: 'line' },
+        this.button('save-text', 'Save text', () => this.save_text()),
+        this.button('download-text', 'Download text', () => this.download_text()),
+        this.button('open-file', 'Open a file', () => file.click()), file),
+      element('h2', {}, 'Picture'),
+      element('div', { class: 'line' }, this.width, ' × ', this.height, size(1), size(2), size(4)),
+      element('div', { class: 'line' }, this.picture_kind, this.button('save-picture', 'Save picture', () => this.write(
+        { suffix: this.picture_kind.value, width: Number(this.width.value), height: Number(this.height.value) }))),
+      element('div', { class: 'line', id: 'at-home' }, this.path, this.button('save-path', 'Save beside the model', () => this.write(
+        { path: this.path.value, width: Number(this.width.value), height: Number(this.height.value) }))),
+      element('h2', {}, 'For other programs'),
+      element('div', { class: 'line' }, element('label', { for: 'format' }, 'Format '), this.format,
+        this.button('save-export', 'Save file', () => this.write({ suffix: this.format.value }))),
+      element('h2', {}, 'Command line'),
+      this.command,
+      element('div', { class: 'line' }, this.button('copy-command', 'Copy', () => this.copy(this.command.textContent ?? '', 'The command line'))),
+      element('h2', {}, 'Link'),
+      element('div', { class: 'line' }, this.button('copy-link', 'Copy link', () => this.copy_link())),
+      link_form,
+    );
+  }
+
+  hello(): void {
+    const { hello } = this.studio;
+    this.format.replaceChildren(...(hello?.formats ?? []).map((format) => element('option', { value: format.startsWith('.') ? format : `.${format}` }, format.replace(/^\./, ''))));
+    this.element.querySelector<HTMLElement>('#at-home')!.hidden = hello?.home !== 'program';
+    this.element.querySelector<HTMLElement>('#save-text')!.hidden = hello?.home !== 'program';
+    this.size(1);
+  }
+
+  async show(): Promise<void> {
+    if (!this.width.value) this.size(1);
+    try {
+      const { command } = await this.studio.session.ask('command');
+      this.command.textContent = String(command);
+    } catch (error) {
+      this.command.textContent = (error as Error).message;
+    }
+  }
+
+  /** Writes the text where the model came from; a page without a folder gives it to the browser. */
+  async save_text(): Promise<void> {
+    const { name } = this.studio.history.now;
+    if (this.studio.hello?.home === 'program') await this.write({ path: name });
+    else this.download_text();
+  }
+
+  /** Opens a file of the person's: its text takes the place of the model. */
+  async open_file(file: File): Promise<void> {
+    if (file.size > 4_000_000) this.studio.say(`${file.name} is too large for a model: it has more than 4 MB.`);
+    else this.open({ name: file.name, text: (await file.text()).replace(/\r\n?/g, '\n') });
+  }
+
+  private download_text(): void {
+    const { name, text } = this.studio.history.now;
+    this.give(name.replace(/^.*[\\/]/, ''), new TextEncoder().encode(text));
+  }
+
+  /** The address of this page with the model in it, without the secret that the program gave the page. */
+  async copy_link(): Promise<void> {
+    const elsewhere = document.querySelector<HTMLMetaElement>('meta[name="graftal-site"]')?.content;
+    const base = elsewhere ?? location.origin + '/';
+    await this.copy(base + (await fragment_of(this.studio.history.now)), 'The link');
+  }
+
+  async file(file: SentFile): Promise<void> {
+    const bytes = await inflate(file.deflated);
+    const name = new TextDecoder().decode(bytes.subarray(0, file.name_bytes));
+    this.give(name, bytes.subarray(file.name_bytes));
+  }
+
+  private give(name: string, bytes: Uint8Array): void {
+    const address = URL.createObjectURL(new Blob([bytes as BlobPart]));
+    element('a', { href: address, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 60_000);
+    this.studio.say(`Saved ${name}.`);
+  }
+
+  private size(times: number): void {
+    const { width_px, height_px } = this.studio.size;
+    this.width.value = String(width_px * times);
+    this.height.value = String(height_px * times);
+  }
+
+  private button(id: string, label: string, act: () => unknown): HTMLButtonElement {
+    const button = element('button', {
+      type: 'button', class: 'quiet', id,
+      onclick: async () => {
+        button.disabled = true;
+        try {
+          await act();
+        } catch (error) {
+          this.studio.say((error as Error).message);
+        } finally {
+          button.disabled = false;
+        }
+      },
+    }, label);
+    return button;
+  }
+
+  private async write(fields: object): Promise<void> {
+    this.studio.say('Working on the file…');
+    try {
+      const { path } = await this.studio.session.ask('write', fields);
+      if (path) this.studio.say(`Saved ${String(path)}.`);
+    } catch (error) {
+      this.studio.say((error as Error).message);
+    }
+  }
+
+  private async copy(text: string, what: string): Promise<void> {
+    try {
+      await navigator.clipboard.writeText(text);
+      this.studio.say(`${what} is in the clipboard.`);
+    } catch {
+      const area = element('textarea', { class: 'unseen' });
+      area.value = text;
+      document.body.append(area);
+      area.select();
+      const done = document.execCommand('copy');
+      area.remove();
+      this.studio.say(done ? `${what} is in the clipboard.` : 'The browser does not let the page copy.');
+    }
+  }
+}

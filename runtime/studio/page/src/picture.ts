@@ -1,0 +1,171 @@
+// The canvas. Tiles of a new picture appear together once they cover it, so that the last one stays until then.
+import { inflate, type Tile } from './protocol';
+import type { Size } from './session';
+
+const longest_hold_ms = 150, frame_share_ms = 12;
+/** Pictures of larger blocks tell less than the last good picture: finer ones have a moment to come first. */
+const largest_block_px = 16, block_hold_ms = 40;
+
+interface Ready {
+  tile: Tile;
+  samples: Uint8Array | null;
+}
+
+export class Picture {
+  /** Number of the state whose picture is shown; 0: none yet. */
+  shown = 0;
+  private readonly context: CanvasRenderingContext2D;
+  private readonly sizes = new Map<number, Size>();
+  private readonly coarse = new Map<number, CanvasRenderingContext2D>();
+  private queue: Ready[] = [];
+  private first_ms = 0;
+  /** Pixels a sample of the coarse pass that comes in; 0: none. */
+  private coarse_pass = 0;
+  private painting = false;
+
+  constructor(readonly canvas: HTMLCanvasElement, private readonly painted: (number: number) => void) {
+    this.context = canvas.getContext('2d', { alpha: false })!;
+  }
+
+  /** Tells the size of the picture that a state asks for. */
+  expect(number: number, size: Size): void {
+    this.sizes.set(number, size);
+    for (const old of this.sizes.keys()) if (old < number - 50) this.sizes.delete(old);
+  }
+
+  tile(tile: Tile): void {
+    const newest = this.queue.at(-1)?.tile.number ?? this.shown;
+    if (tile.number < newest || !this.sizes.has(tile.number)) return;
+    if (tile.number > newest) {
+      // Tiles of an older picture that still wait would only be painted over.
+      this.queue = [];
+      this.first_ms = performance.now();
+    }
+    const ready: Ready = { tile, samples: null };
+    this.queue.push(ready);
+    inflate(tile.deflated).then(
+      (samples) => {
+        ready.samples = samples;
+        this.schedule();
+      },
+      () => {
+        this.queue = this.queue.filter((other) => other !== ready);
+      },
+    );
+  }
+
+  /** Nothing waits to be painted. */
+  get idle(): boolean {
+    return this.queue.length === 0;
+  }
+
+  private schedule(): void {
+    if (this.painting) return;
+    this.painting = true;
+    requestAnimationFrame(() => {
+      this.painting = false;
+      this.paint();
+    });
+  }
+
+  private paint(): void {
+    const number = this.queue[0]?.tile.number;
+    if (number === undefined) return;
+    let count = this.queue.findIndex(({ samples }) => samples === null);
+    if (count < 0) count = this.queue.length;
+    const size = this.sizes.get(number)!;
+    if (number > this.shown) {
+      const area = this.queue.slice(0, count).reduce((sum, { tile }) => sum + tile.width * tile.height, 0);
+      const held_ms = performance.now() - this.first_ms, blocks = this.queue.slice(0, count).every(({ tile }) => tile.coarse > largest_block_px);
+      if ((area < size.width_px * size.height_px && held_ms < longest_hold_ms) || (blocks && held_ms < block_hold_ms)) {
+        setTimeout(() => this.schedule(), 20);
+        return;
+      }
+      this.begin(number, size);
+    }
+    const start_ms = performance.now();
+    // Coarse tiles that follow each other are enlarged together, before a finer one is painted over them.
+    let coarse: Tile[] = [];
+    const enlarge = () => {
+      if (coarse.length) this.smooth(coarse);
+      coarse = [];
+    };
+    let done = 0;
+    while (done < count && performance.now() - start_ms < frame_share_ms) {
+      const { tile, samples } = this.queue[done++]!;
+      const data = tile_data(tile, samples!);
+      if (!data) continue;
+      if (coarse.length && coarse[0]!.coarse !== tile.coarse) enlarge();
+      if (tile.coarse === 1) {
+        this.context.putImageData(data, tile.x, tile.y);
+      } else {
+        this.coarse_context(tile.coarse, size).putImageData(data, tile.x / tile.coarse, tile.y / tile.coarse);
+        coarse.push(tile);
+      }
+    }
+    enlarge();
+    this.queue.splice(0, done);
+    if (this.queue.length) this.schedule();
+    this.painted(number);
+  }
+
+  private begin(number: number, { width_px, height_px }: Size): void {
+    this.shown = number;
+    this.coarse_pass = 0;
+    const { canvas } = this;
+    if (canvas.width === width_px && canvas.height === height_px) return;
+    const old = document.createElement('canvas');
+    old.width = canvas.width;
+    old.height = canvas.height;
+    old.getContext('2d')!.drawImage(canvas, 0, 0);
+    canvas.width = width_px;
+    canvas.height = height_px;
+    this.context.drawImage(old, 0, 0, width_px, height_px);
+    this.coarse.clear();
+  }
+
+  private coarse_context(pixels: number, { width_px, height_px }: Size): CanvasRenderingContext2D {
+    let context = this.coarse.get(pixels);
+    if (!context) {
+      const canvas = document.createElement('canvas');
+      canvas.width = Math.ceil(width_px / pixels);
+      canvas.height = Math.ceil(height_px / pixels);
+      context = canvas.getContext('2d', { alpha: false })!;
+      this.coarse.set(pixels, context);
+    }
+    if (this.coarse_pass !== pixels) {
+      // Until its neighbours come, a tile is smoothed against what is shown: it has no dark edges.
+      this.coarse_pass = pixels;
+      context.drawImage(this.canvas, 0, 0, width_px / pixels, height_px / pixels);
+    }
+    return context;
+  }
+
+  /** Enlarges coarse samples where these tiles are, without seams between them. */
+  private smooth(tiles: Tile[]): void {
+    const { context } = this, pixels = tiles[0]!.coarse, from = this.coarse.get(pixels)!.canvas;
+    context.save();
+    context.beginPath();
+    for (const { x, y, width, height } of tiles) context.rect(x, y, width, height);
+    context.clip();
+    context.imageSmoothingEnabled = true;
+    context.imageSmoothingQuality = 'high';
+    context.drawImage(from, 0, 0, from.width * pixels, from.height * pixels);
+    context.restore();
+  }
+}
+
+/** The samples of a tile with full alpha; null where there are fewer than it promises. */
+export function tile_data(tile: Tile, samples: Uint8Array): ImageData | null {
+  const width = Math.ceil(tile.width / tile.coarse), height = Math.ceil(tile.height / tile.coarse);
+  const count = width * height;
+  if (count === 0 || samples.length < 3 * count) return null;
+  const data = new ImageData(width, height), to = data.data;
+  for (let i = 0, from = 0, at = 0; i < count; ++i) {
+    to[at++] = samples[from++]!;
+    to[at++] = samples[from++]!;
+    to[at++] = samples[from++]!;
+    to[at++] = 255;
+  }
+  return data;
+}

@@ -1,0 +1,173 @@
+// The person's hands on the picture: orbit, pan and dolly by mouse, touch and keys; the wheel zooms without an end.
+import { dollied, orbited, panned } from './camera';
+import { latest, type Studio } from './studio';
+import type { Camera } from './protocol';
+
+const turn_rad_of_px = 0.008, key_turn_rad = 0.1, key_pan_px = 40;
+
+/** An enlargement that the picture shows already, before the session has drawn it. */
+interface Ahead {
+  factor: number;
+  x: number;
+  y: number;
+  /** Of the state that holds it; null: none was sent yet. */
+  number: number | null;
+}
+
+export class ViewControl {
+  private ahead: Ahead[] = [];
+  private readonly pointers = new Map<number, { x: number; y: number }>();
+  private moved_px = 0;
+  private wanted = { factor: 1, x: 0, y: 0 };
+  private readonly ask_zoom: (factor: number) => void;
+
+  constructor(
+    private readonly view: HTMLElement, private readonly canvas: HTMLCanvasElement, private readonly studio: Studio,
+    private readonly pick: (x_px: number, y_px: number) => void,
+  ) {
+    this.ask_zoom = latest(() => this.zoom_now());
+    view.addEventListener('wheel', (event) => {
+      event.preventDefault();
+      const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
+      this.zoom(Math.exp(-event.deltaY * lines * 0.0015), ...this.at(event));
+    }, { passive: false });
+    view.addEventListener('contextmenu', (event) => event.preventDefault());
+    view.addEventListener('pointerdown', (event) => this.down(event));
+    view.addEventListener('pointermove', (event) => this.move(event));
+    for (const name of ['pointerup', 'pointercancel'] as const) view.addEventListener(name, (event) => this.up(event));
+    view.addEventListener('keydown', (event) => this.key(event));
+  }
+
+  /** Pixels of the canvas under an event. */
+  at({ clientX, clientY }: { clientX: number; clientY: number }): [number, number] {
+    const box = this.view.getBoundingClientRect(), { width_px, height_px } = this.studio.size;
+    return [((clientX - box.left) / box.width) * width_px, ((clientY - box.top) / box.height) * height_px];
+  }
+
+  /** Enlarges at once what is seen, and asks for the state that shows it; further calls meanwhile add up. */
+  zoom(factor: number, x = this.studio.size.width_px / 2, y = this.studio.size.height_px / 2): void {
+    if (!this.studio.model) return;
+    this.wanted = { factor: this.wanted.factor * factor, x, y };
+    this.ahead.push({ factor, x, y, number: null });
+    this.show_ahead();
+    this.ask_zoom(factor);
+  }
+
+  /** The picture of a state is there: what was shown ahead of it is in it. */
+  painted(number: number): void {
+    if (!this.ahead.length) return;
+    this.ahead = this.ahead.filter((one) => one.number === null || one.number > number);
+    this.show_ahead();
+  }
+
+  whole(): void {
+    this.forget_ahead();
+    this.studio.history.end_step();
+    this.studio.change({ camera: null, at: null, zoom: null });
+  }
+
+  forget_ahead(): void {
+    this.ahead = [];
+    this.show_ahead();
+  }
+
+  private async zoom_now(): Promise<void> {
+    const { factor, x, y } = this.wanted;
+    this.wanted = { factor: 1, x, y };
+    if (factor === 1) return;
+    const mine = this.ahead.filter(({ number }) => number === null);
+    try {
+      const answer = await this.studio.session.ask('zoom', { x, y, factor });
+      const { at = null, zoom = null, camera = null } = answer as { at?: string; zoom?: string; camera?: Camera };
+      this.studio.change({ at, zoom, camera }, 'zoom');
+      for (const one of mine) one.number = this.studio.session.number + (this.studio.session.holds ? 1 : 0);
+    } catch (error) {
+      this.ahead = this.ahead.filter((one) => !mine.includes(one));
+      this.show_ahead();
+      this.studio.say((error as Error).message);
+    }
+  }
+
+  private show_ahead(): void {
+    const { width_px, height_px } = this.studio.size;
+    let scale = 1, left = 0, top = 0;
+    for (const { factor, x, y } of this.ahead) {
+      scale *= factor;
+      left = x + (left - x) * factor;
+      top = y + (top - y) * factor;
+    }
+    this.canvas.style.transform = this.ahead.length
+      ? `translate(${(100 * left) / width_px}%, ${(100 * top) / height_px}%) scale(${scale})` : '';
+  }
+
+  private steer(change: (camera: Camera) => Camera, key: string): void {
+    const { camera } = this.studio;
+    if (camera) this.studio.change({ camera: change(camera) }, key);
+  }
+
+  private down(event: PointerEvent): void {
+    if ((event.target as Element).closest('[data-handle]')) return;
+    this.view.setPointerCapture(event.pointerId);
+    if (this.pointers.size === 0) {
+      this.moved_px = 0;
+      this.studio.history.end_step();
+    } else {
+      this.moved_px = 100;
+    }
+    this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+  }
+
+  private move(event: PointerEvent): void {
+    const last = this.pointers.get(event.pointerId);
+    if (!last) return;
+    const dx = event.clientX - last.x, dy = event.clientY - last.y;
+    if (dx === 0 && dy === 0) return;
+    this.moved_px += Math.hypot(dx, dy);
+    if (this.moved_px < 4) return;
+    const box = this.view.getBoundingClientRect();
+    if (this.pointers.size > 1) {
+      const other = [...this.pointers].find(([id]) => id !== event.pointerId)![1];
+      const before = Math.hypot(last.x - other.x, last.y - other.y), after = Math.hypot(event.clientX - other.x, event.clientY - other.y);
+      last.x = event.clientX;
+      last.y = event.clientY;
+      if (before > 10 && after > 10) {
+        this.zoom(after / before, ...this.at({ clientX: (last.x + other.x) / 2, clientY: (last.y + other.y) / 2 }));
+      }
+      return;
+    }
+    last.x = event.clientX;
+    last.y = event.clientY;
+    if (event.ctrlKey || event.metaKey) {
+      this.steer((camera) => dollied(camera, Math.exp(-0.01 * dy)), 'camera');
+    } else if (event.shiftKey || event.buttons & 6) {
+      this.steer((camera) => panned(camera, dx, dy, box.width), 'camera');
+    } else {
+      this.steer((camera) => orbited(camera, dx * turn_rad_of_px, dy * turn_rad_of_px), 'camera');
+    }
+  }
+
+  private up(event: PointerEvent): void {
+    if (!this.pointers.delete(event.pointerId)) return;
+    if (event.type === 'pointerup' && this.moved_px < 4 && event.button === 0) this.pick(...this.at(event));
+    if (this.pointers.size === 0) this.studio.history.end_step();
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (event.target !== this.view || event.ctrlKey || event.metaKey || event.altKey) return;
+    const arrows: Record<string, [number, number]> = {
+      ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
+    };
+    const arrow = arrows[event.key], { width } = this.view.getBoundingClientRect();
+    if (arrow && event.shiftKey) {
+      this.steer((camera) => panned(camera, -arrow[0] * key_pan_px, -arrow[1] * key_pan_px, width), 'camera key');
+    } else if (arrow) {
+      this.steer((camera) => orbited(camera, arrow[0] * key_turn_rad, arrow[1] * key_turn_rad), 'camera key');
+    } else if (event.key === '+' || event.key === '=') this.zoom(1.25);
+    else if (event.key === '-' || event.key === '_') this.zoom(0.8);
+    else if (event.key === '0') this.whole();
+    else if (event.key === 'PageUp' || event.key === 'PageDown') {
+      this.steer((camera) => dollied(camera, event.key === 'PageUp' ? 1.15 : 1 / 1.15), 'camera key');
+    } else return;
+    event.preventDefault();
+  }
+}

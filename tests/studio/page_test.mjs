@@ -1,0 +1,487 @@
+// node page_test.mjs MODULES PAGE [PROGRAM MODEL]: drives the page of graftal studio in headless Chromium, against the mock session.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import path from 'node:path';
+import { createRequire } from 'node:module';
+import { serve } from './mock_session.mjs';
+
+const [modules, folder] = process.argv.slice(2).map((name) => path.resolve(name));
+for (const needed of [modules, path.join(folder, 'index.html')]) {
+  if (fs.existsSync(needed)) continue;
+  console.error(`there is no ${needed}: tools/test installs npm's packages, and the target graftal_studio_page makes the page`);
+  process.exit(1);
+}
+const require = createRequire(path.join(modules, 'x'));
+const { chromium } = require('playwright-core');
+const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox', '--disable-gpu'],
+});
+let passed = 0, failed = 0;
+
+/** Opens the page in a browser of its own; `check` gets a hand on it. */
+async function test(name, check, { width = 1280, height = 720, dark = false, opened, hash = '', touch = false } = {}) {
+  if (process.env.ONLY && !name.includes(process.env.ONLY)) return;
+  const session = await serve(folder, modules, opened);
+  const context = await browser.newContext({
+    viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', permissions: ['clipboard-read', 'clipboard-write'], acceptDownloads: true, hasTouch: touch,
+  });
+  const page = await context.newPage(), faults = [];
+  page.setDefaultTimeout(10_000);
+  page.on('pageerror', (error) => faults.push(error.stack));
+  page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
+  page.on('request', (request) => !/^(http:\/\/127\.0\.0\.1|data:|blob:)/.test(request.url()) && faults.push(`asked ${request.url()}`));
+  try {
+    await page.goto(session.address + hash);
+    await page.waitForSelector('body[data-picture=done]');
+    await check(hand_on(page, session), page, session);
+    assert.deepEqual(faults, []);
+    ++passed;
+  } catch (error) {
+    ++failed;
+    console.error(`FAILED ${name}\n${error.stack}\n${faults.join('\n')}`);
+    if (process.env.SHOTS) await page.screenshot({ path: path.join(process.env.SHOTS, `${name.replace(/\W+/g, '_')}.png`) });
+  } finally {
+    await context.close();
+    session.close();
+  }
+}
+
+function hand_on(page, { told }) {
+  const hand = {
+    last: () => told.states.at(-1),
+    asked: (what) => told.asks.filter((ask) => ask.what === what),
+    text: () => page.evaluate(() => [...document.querySelectorAll('.cm-line')].map((line) => line.textContent).join('\n')),
+    pixels: () => page.evaluate(() => {
+      const canvas = document.getElementById('picture');
+      return canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.reduce((sum, value, i) => (sum * 31 + value * (i % 97)) % 4294967291, 7);
+    }),
+    /** Waits until the picture of the last state is complete. */
+    async settled() {
+      await page.waitForTimeout(60);
+      await page.waitForSelector('body[data-picture=done]');
+    },
+    async changes(act) {
+      const before = await hand.pixels();
+      await act();
+      await hand.until(async () => (await hand.pixels()) !== before, 'the pixels change');
+      await hand.settled();
+    },
+    async until(holds, what) {
+      for (let i = 0; i < 100; ++i) {
+        if (await holds()) return;
+        await page.waitForTimeout(50);
+      }
+      assert.fail(`it never came that ${what}`);
+    },
+    async place_of(selector) {
+      const box = await page.locator(selector).first().boundingBox();
+      return [box.x + box.width / 2, box.y + box.height / 2];
+    },
+    async drag([x, y], dx, dy, { steps = 4, shift = false } = {}) {
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      if (shift) await page.keyboard.down('Shift');
+      await page.mouse.move(x + dx, y + dy, { steps });
+      await page.mouse.up();
+      if (shift) await page.keyboard.up('Shift');
+    },
+    /** Where a piece of the text is on the screen. */
+    place_of_text: (piece) => page.evaluate((wanted) => {
+      const walker = document.createTreeWalker(document.querySelector('.cm-content'), NodeFilter.SHOW_TEXT);
+      for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+        const at = node.data.indexOf(wanted);
+        if (at < 0) continue;
+        const range = document.createRange();
+        range.setStart(node, at);
+        range.setEnd(node, at + wanted.length);
+        const box = range.getBoundingClientRect();
+        return [box.x + box.width / 2, box.y + box.height / 2];
+      }
+      return null;
+    }, piece),
+    async type_at(piece, text) {
+      const [x, y] = await hand.place_of_text(piece);
+      await page.mouse.click(x, y);
+      await page.keyboard.press('End');
+      await page.keyboard.type(text);
+    },
+    knob: (name) => page.locator(`.knob input[aria-label="${name}"]`),
+  };
+  return hand;
+}
+
+await test('an error is underlined, and its mending changes the picture', async (hand, page) => {
+  await hand.type_at('terminal', ' oops');
+  await page.waitForSelector('.cm-lintRange-error');
+  assert.match(await page.textContent('#finding'), /Line 9: .*does not know the word oops.*words that may stand here/);
+  assert.ok(await page.isVisible('#stale'), 'the page says that it shows the last good picture');
+  await page.hover('.cm-lintRange-error');
+  await page.waitForSelector('.cm-tooltip-lint .hint');
+  const before = await hand.pixels();
+  for (let i = 0; i < 5; ++i) await page.keyboard.press('Backspace');
+  await hand.until(async () => !(await page.isVisible('#stale')), 'the picture is good again');
+  await hand.settled();
+  assert.equal(await hand.pixels(), before);
+  await hand.changes(() => hand.type_at('curl', '9'));
+  assert.match(hand.last().text, /curl = 0\.859/);
+});
+
+await test('a slider: coarse, fine, typed, reset, written', async (hand, page) => {
+  const slider = await hand.place_of('.knob input[aria-label="lean"]');
+  await hand.changes(() => hand.drag(slider, 20, 0));
+  const coarse = hand.last().set.lean;
+  assert.ok(coarse > 2.7 && coarse < 5, `${coarse}`);
+  await page.keyboard.down('Shift');
+  await hand.drag(slider, 20, 0);
+  await page.keyboard.up('Shift');
+  await hand.settled();
+  const fine = hand.last().set.lean;
+  assert.ok(fine > coarse && fine - coarse < 0.1, `${coarse} ${fine}`);
+  await page.dblclick('.knob button.number >> nth=0');
+  await page.keyboard.type('7.25');
+  await page.keyboard.press('Enter');
+  await hand.settled();
+  assert.equal(hand.last().set.lean, 7.25);
+  await page.click('[aria-label="Write lean into the text"]');
+  await hand.settled();
+  assert.match(hand.last().text, /let lean = 7\.25/);
+  assert.deepEqual(hand.last().set, {});
+  await hand.knob('curl').press('ArrowRight');
+  await hand.settled();
+  assert.ok(hand.last().set.curl > 0.85);
+  await page.click('[aria-label="Reset curl"]');
+  await hand.settled();
+  assert.deepEqual(hand.last().set, {});
+});
+
+await test('numbers and colours in the text are dragged and picked', async (hand, page) => {
+  const number = await hand.place_of_text('2.5');
+  await hand.changes(() => hand.drag(number, 30, 0));
+  const [, value] = /let lean = (\S+)/.exec(hand.last().text);
+  assert.ok(Number(value) > 3 && Number(value) < 4.5, value);
+  await hand.drag(await hand.place_of_text(value), 31, 0, { shift: true });
+  await hand.settled();
+  const fine = Number(/let lean = (\S+)/.exec(hand.last().text)[1]);
+  assert.ok(fine > Number(value) && fine < Number(value) + 0.2, `${value} ${fine}`);
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  await hand.settled();
+  assert.match(hand.last().text, /let lean = 2\.5\n/);
+  await page.locator('.swatch').evaluate((input) => {
+    input.value = '#ff0000';
+    input.dispatchEvent(new Event('input'));
+  });
+  await hand.settled();
+  assert.match(hand.last().text, /tint rgb <1, 0, 0> 0\.5/);
+});
+
+await test('completion, hover, definition, rename, format', async (hand, page) => {
+  await hand.type_at('curl', '\ntr');
+  await page.waitForSelector('.cm-tooltip-autocomplete');
+  await page.waitForTimeout(150);
+  await page.keyboard.press('Enter');
+  await hand.until(async () => /\ntranslate|\n +translate/.test(await hand.text()), 'the word is completed');
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  const word = await hand.place_of_text('frond');
+  await page.mouse.move(...word);
+  await page.waitForSelector('.hover strong');
+  await page.mouse.move(5, 5);
+  await page.mouse.click(...word);
+  await page.keyboard.press('F12');
+  await page.waitForTimeout(100);
+  assert.equal(await page.evaluate(() => getSelection().toString()), 'lean');
+  await page.keyboard.press('F2');
+  await page.keyboard.type('bend');
+  await page.keyboard.press('Enter');
+  await hand.until(async () => /let bend[^]*rotate bend/.test(await hand.text()), 'both are renamed');
+  await page.keyboard.press('Shift+Alt+F');
+  await hand.until(async () => /map stem \{/.test(await hand.text()), 'the text is formatted');
+});
+
+await test('orbit, pan, dolly; by mouse and by keys; undo them all', async (hand, page) => {
+  const before = await hand.pixels(), [x, y] = await hand.place_of('#view');
+  await hand.changes(() => hand.drag([x, y], 80, 30));
+  const orbited = hand.last().camera;
+  assert.notEqual(orbited.location[0], 0.1);
+  assert.deepEqual(orbited.look_at, [0.1, 5, 0]);
+  assert.ok(Math.abs(Math.hypot(orbited.location[0] - 0.1, orbited.location[1] - 5, orbited.location[2]) - 17) < 1e-9);
+  await hand.changes(() => hand.drag([x, y], 50, 0, { shift: true }));
+  await page.focus('#view');
+  await hand.changes(() => page.keyboard.press('PageUp'));
+  await hand.changes(() => page.keyboard.press('ArrowLeft'));
+  await hand.changes(() => page.keyboard.press('Shift+ArrowDown'));
+  for (let i = 0; i < 5; ++i) await page.keyboard.press('Control+z');
+  await hand.settled();
+  assert.equal(hand.last().camera, null);
+  assert.equal(await hand.pixels(), before);
+  assert.ok(await page.isDisabled('#undo'));
+});
+
+await test('the wheel zooms without an end, and back', async (hand, page) => {
+  const before = await hand.pixels(), [x, y] = await hand.place_of('#view');
+  await page.mouse.move(x, y);
+  await hand.changes(async () => {
+    for (let i = 0; i < 30; ++i) await page.mouse.wheel(0, -1000);
+  });
+  await hand.until(() => Number(hand.last().zoom) > 1e18, 'the zoom is deep');
+  assert.match(await page.textContent('#place'), /whole.*frond.*frond.*× /);
+  await page.click('#place .edit');
+  await page.fill('#place [name=at]', 'left');
+  await page.fill('#place [name=zoom]', '1e30');
+  await page.keyboard.press('Enter');
+  await hand.settled();
+  assert.equal(hand.last().at, 'left');
+  assert.equal(hand.last().zoom, '1e30');
+  await page.click('#place .crumb >> nth=0');
+  await hand.settled();
+  assert.equal(hand.last().zoom, null);
+  assert.equal(await hand.pixels(), before);
+});
+
+await test('a map is dragged by its corner; a map that would grow is red', async (hand, page) => {
+  await page.click('#tab-maps');
+  await page.focus('[data-map=left]');
+  const corner = await hand.place_of('.corner >> nth=1');
+  await hand.changes(() => hand.drag(corner, 20, 12));
+  assert.match(hand.last().text, /map left { matrix /);
+  assert.match(hand.last().text, /# A fern/);
+  const [, row] = /map left { matrix ([^}]*)/.exec(hand.last().text);
+  const [a, , , , b] = row.split(',').map(Number);
+  assert.ok(Math.hypot(a, b) > 0.3 && Math.hypot(a, b) < 0.5, row);
+  const turn = await hand.place_of('.turn');
+  await hand.drag(turn, 30, 10);
+  const edge = await hand.place_of('.handle.edge');
+  await hand.drag(edge, 10, 5);
+  await hand.settled();
+  const good = hand.last().text;
+  const far = await hand.place_of('.corner >> nth=3'), near = await hand.place_of('.corner >> nth=0');
+  await page.mouse.move(...far);
+  await page.mouse.down();
+  await page.mouse.move(far[0] + 3 * (far[0] - near[0]), far[1] + 3 * (far[1] - near[1]), { steps: 3 });
+  await page.waitForSelector('.map.bad');
+  assert.match(await page.textContent('#said'), /would grow/);
+  assert.match(await page.textContent('.maps .bad:has([data-listed=left])'), /would grow/);
+  await page.mouse.up();
+  assert.equal(await page.locator('.map.bad').count(), 0);
+  await hand.settled();
+  assert.ok(hand.last().text.length > 10 && !/NaN/.test(hand.last().text) && good.includes('matrix'));
+  await page.focus('[data-map=right]');
+  await hand.changes(() => page.keyboard.press('ArrowUp'));
+  assert.match(hand.last().text, /map right { matrix /);
+  await page.click('[data-edge="left right"]');
+  await hand.settled();
+  assert.match(hand.last().text, /follow left -> right/);
+});
+
+const solid = `rifs solid {
+  map a { scale 0.5  translate <-0.5, -0.5, -0.5> }
+  map b { scale 0.5  translate <0.5, -0.5, -0.5> }
+  map c { scale 0.5  translate <-0.5, 0.5, -0.5> }
+  map d { scale 0.5  translate <0.5, 0.5, 0.5> }
+}
+`;
+await test('a box in space is moved, turned and sheared', async (hand, page) => {
+  const matrix = (name) => new RegExp(`map ${name} { matrix ([^}]*)}`).exec(hand.last().text)[1].split(',').map(Number);
+  await page.click('#tab-maps');
+  await page.focus('[data-map=d]');
+  assert.equal(await page.locator('.handle.corner').count(), 8);
+  assert.equal(await page.locator('.handle.edge').count(), 6);
+  const face = await page.locator('[data-map=d] .face').boundingBox();
+  await hand.changes(() => hand.drag([face.x + face.width * 0.3, face.y + face.height * 0.5], 30, -20));
+  const moved = matrix('d');
+  assert.deepEqual([moved[0], moved[5], moved[10]], [0.5, 0.5, 0.5]);
+  assert.ok(moved[3] > 0.5 && moved[7] > 0.5, `${moved}`);
+  await hand.changes(async () => hand.drag(await hand.place_of('.handle.turn'), 30, 5));
+  const turned = matrix('d'), column = (m, c) => Math.hypot(m[c], m[4 + c], m[8 + c]);
+  for (const c of [0, 1, 2]) assert.ok(Math.abs(column(turned, c) - 0.5) < 1e-3, `${turned}`);
+  assert.ok(Math.abs(turned[1]) > 0.02);
+  await hand.changes(async () => hand.drag(await hand.place_of('.handle.edge >> nth=3'), 12, 4));
+  const sheared = matrix('d');
+  for (const c of [0, 2]) assert.ok(Math.abs(column(sheared, c) - 0.5) < 2e-3, `${sheared}`);
+  assert.ok(Math.hypot(...[1, 5, 9].map((i) => sheared[i] - turned[i])) > 0.01, `${turned} ${sheared}`);
+}, { opened: { name: 'solid.rifs', text: solid } });
+
+await test('a click on the picture selects its rule; the point is pulled', async (hand, page) => {
+  const [x, y] = await hand.place_of('#view');
+  await page.mouse.click(x + 5, y - 40);
+  await page.waitForSelector('#picked dl');
+  assert.match(await page.textContent('#picked'), /frond\.left/);
+  await hand.until(async () => (await page.locator('.cm-selectionLayer > *').count()) > 0, 'the selection shows without the focus');
+  await page.focus('.cm-content');
+  assert.match(await page.evaluate(() => getSelection().toString()), /^map frond/);
+  await hand.changes(async () => hand.drag(await hand.place_of('.point'), 15, 10));
+  assert.match(hand.last().text, /map frond { matrix /);
+});
+
+await test('the grid of variations, and back', async (hand, page) => {
+  await page.click('#tab-vary');
+  await page.waitForSelector('#grid button:nth-child(9)');
+  await hand.until(() => hand.asked('thumbnail').length === 9, 'nine pictures are asked for');
+  assert.match(await page.textContent('#grid button:nth-child(1)'), /lean -1/);
+  await page.waitForTimeout(300);
+  await page.click('#grid button:nth-child(1)');
+  await hand.settled();
+  assert.equal(hand.last().set.lean, -1);
+  await hand.until(() => hand.asked('vary').length === 2, 'the grid is made anew');
+  await page.selectOption('#vary-kind', 'seed');
+  await hand.until(() => hand.asked('vary').at(-1).kind === 'seed', 'seeds are varied');
+  await page.click('#vary-back');
+  await hand.settled();
+  assert.deepEqual(hand.last().set, {});
+});
+
+await test('time plays, and stops', async (hand, page) => {
+  await page.click('#tab-time');
+  await page.fill('#time-seconds', '1');
+  await page.click('#play');
+  await hand.until(() => hand.last().time > 3, 'time goes on');
+  await hand.until(async () => (await page.textContent('#play')) === 'Play', 'it ends');
+  assert.equal(hand.last().time, 10);
+  await page.click('#undo');
+  await hand.settled();
+  assert.equal(hand.last().time, null);
+});
+
+await test('a reload finds everything; a link holds the model', async (hand, page, session) => {
+  await hand.knob('lean').press('PageUp');
+  await hand.type_at('# A fern', ' Really.');
+  await page.fill('.presets input', 'leaning');
+  await page.click('.presets form button');
+  await hand.settled();
+  const before = hand.last();
+  assert.match(before.text, /draws it\. Really\./);
+  await page.reload();
+  await hand.settled();
+  assert.deepEqual({ ...hand.last(), number: 0 }, { ...before, number: 0 });
+  await page.waitForSelector('.presets .link');
+  await page.click('#link');
+  await page.waitForTimeout(200);
+  const link = await page.evaluate(() => navigator.clipboard.readText());
+  assert.doesNotMatch(link, /mock/, 'the secret of the address stays here');
+  await page.click('#undo');
+  await page.click('#undo');
+  await hand.settled();
+  assert.doesNotMatch(hand.last().text, /Really/);
+  assert.deepEqual(hand.last().set, {});
+  await page.goto(session.address + link.slice(link.indexOf('#')));
+  await hand.until(() => /Really/.test(hand.last().text), 'the link is read');
+  assert.deepEqual(hand.last().set, before.set);
+  await page.evaluate(() => { location.hash = '#m=AAAA'; });
+  await hand.until(async () => /no model/.test(await page.textContent('#said')), 'a bad link is told');
+});
+
+await test('fingers: one orbits, two zoom, a tap picks', async (hand, page) => {
+  const [x, y] = await hand.place_of('#view'), client = await page.context().newCDPSession(page);
+  const touch = (type, ...points) => client.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
+  await touch('touchStart', [x, y]);
+  for (let i = 1; i <= 5; ++i) await touch('touchMove', [x + 10 * i, y]);
+  await touch('touchEnd');
+  await hand.settled();
+  assert.ok(Math.abs(hand.last().camera.location[0] - 0.1) > 1);
+  await touch('touchStart', [x - 40, y], [x + 40, y]);
+  for (let i = 1; i <= 5; ++i) await touch('touchMove', [x - 40 - 8 * i, y], [x + 40 + 8 * i, y]);
+  await touch('touchEnd');
+  await hand.settled();
+  await hand.until(() => Math.abs(Number(hand.last().zoom) - 2) < 0.1, 'two fingers enlarge twice');
+  await touch('touchStart', [x, y]);
+  await touch('touchEnd');
+  await page.waitForSelector('#picked dl');
+}, { width: 390, height: 844, touch: true });
+
+await test('a file is opened, its text saved; the divider moves', async (hand, page) => {
+  await page.click('#tab-out');
+  await page.setInputFiles('input[type=file]', { name: 'twig.rifs', mimeType: 'text/plain', buffer: Buffer.from('rifs twig {\r\n  map a { scale 0.5 }\r\n}\r\n') });
+  await hand.until(() => hand.last().name === 'twig.rifs', 'the file is the model');
+  assert.equal(hand.last().text, 'rifs twig {\n  map a { scale 0.5 }\n}\n');
+  await page.keyboard.press('Control+s');
+  await hand.until(() => hand.asked('write').at(-1)?.path === 'twig.rifs', 'the text is saved');
+  const before = hand.last().width;
+  await hand.drag(await hand.place_of('#divider'), -100, 0);
+  await hand.until(() => hand.last().width > before + 90, 'the picture is wider');
+  await page.keyboard.press('Control+z');
+  await hand.until(() => hand.last().name === 'fern.rifs', 'the fern is back');
+});
+
+await test('files and the command line', async (hand, page) => {
+  await page.click('#tab-out');
+  await hand.until(async () => /graftal render fern\.rifs --size/.test(await page.textContent('pre')), 'the command shows');
+  await page.click('text=2×');
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save-picture')]);
+  assert.equal(download.suggestedFilename(), 'fern.png');
+  const { width, height } = hand.asked('write')[0];
+  assert.equal(fs.readFileSync(await download.path(), 'utf8'), `${width}x${height}`);
+  assert.equal(width, 2 * hand.last().width);
+  await page.selectOption('#format', '.glb');
+  const [exported] = await Promise.all([page.waitForEvent('download'), page.click('#save-export')]);
+  assert.equal(exported.suggestedFilename(), 'fern.glb');
+});
+
+await test('all by keyboard alone', async (hand, page) => {
+  await page.keyboard.press('F6');
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type('# typed');
+  await hand.until(() => /# typed/.test(hand.last().text), 'the text has it');
+  await page.keyboard.press('F6');
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'view');
+  await page.keyboard.press('+');
+  await hand.until(() => hand.last().zoom !== null, 'it zooms');
+  await page.keyboard.press('0');
+  await page.keyboard.press('F6');
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'tab-knobs');
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('ArrowRight');
+  await hand.until(() => hand.last().set.lean > 2.5, 'the knob turns');
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter');
+  await page.keyboard.type('3');
+  await page.keyboard.press('Enter');
+  await hand.until(() => hand.last().set.lean === 3, 'the number is typed');
+  await page.keyboard.press('F6');
+  await page.keyboard.press('F6');
+  await page.keyboard.press('F6');
+  await page.keyboard.press('ArrowRight');
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'tab-maps');
+  while (!(await page.isDisabled('#undo'))) await page.keyboard.press('Control+z');
+  await hand.settled();
+  assert.doesNotMatch(hand.last().text, /typed/);
+  assert.deepEqual([hand.last().set, hand.last().zoom], [{}, null]);
+});
+
+for (const [width, height] of [[1280, 720], [390, 844]]) {
+  for (const dark of [false, true]) {
+    await test(`axe finds nothing at ${width}, ${dark ? 'dark' : 'light'}`, async (hand, page) => {
+      await page.evaluate(axe);
+      for (const tab of [...(width < 800 ? ['text'] : []), 'knobs', 'maps', 'vary', 'time', 'out']) {
+        await page.click(`#tab-${tab}`);
+        await page.waitForTimeout(150);
+        const { violations } = await page.evaluate(() => window.axe.run());
+        assert.deepEqual(violations.map(({ id, nodes }) => [id, nodes.map(({ html, failureSummary }) => html.slice(0, 200) + failureSummary)]), [], tab);
+        assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than the page');
+      }
+      assert.ok(hand.last().width > 100);
+    }, { width, height, dark });
+  }
+}
+
+const rows = Array.from({ length: 300 }, (_, i) => `  let v${i} = 0.${i + 1}\n  map m${i} { scale 0.${(i % 8) + 1} } # row ${i}`).join('\n');
+for (const [name, opened] of [['a fern', undefined], ['many maps', { name: 'rows.rifs', text: `rifs rows {\n${rows}\n}\n` }]]) {
+  await test(`no task takes 50 ms of the processor: ${name}`, async (hand, page) => {
+    await browser.startTracing(page, { categories: ['toplevel', 'disabled-by-default-devtools.timeline', 'devtools.timeline'] });
+    await hand.drag(await hand.place_of('.knob input'), 40, 0, { steps: 10 });
+    await hand.type_at('rifs', ' some more words');
+    await page.click('#tab-maps');
+    await hand.drag(await hand.place_of('#view'), 60, 0, { steps: 10 });
+    await hand.settled();
+    const { traceEvents } = JSON.parse(await browser.stopTracing());
+    const main = new Set(traceEvents.filter(({ name: event, args }) => event === 'thread_name' && args.name === 'CrRendererMain').map(({ pid, tid }) => `${pid} ${tid}`));
+    const tasks = traceEvents.filter((event) => event.name === 'RunTask' && main.has(`${event.pid} ${event.tid}`));
+    const longest_ms = Math.max(...tasks.map(({ tdur }) => (tdur ?? 0) / 1000));
+    assert.ok(tasks.length > 100 && longest_ms < 50, `${tasks.length} tasks, the longest took ${longest_ms} ms`);
+  }, { opened });
+}
+
+await browser.close();
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed ? 1 : 0);

@@ -28,9 +28,8 @@ bool parse_below(TokenStream& stream, std::optional<Expression>& below) {
 } // namespace
 
 bool at_rifs_item(const TokenStream& stream) {
-    return stream.at_name() &&
-           std::find(rifs_item_words.begin(), rifs_item_words.end(), stream.peek().text) !=
-               rifs_item_words.end();
+    return stream.at_name() && std::find(rifs_item_words.begin(), rifs_item_words.end(),
+                                         stream.peek().text) != rifs_item_words.end();
 }
 
 bool take_rifs_map(TokenStream& stream, std::size_t& map_room) {

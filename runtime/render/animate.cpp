@@ -12,10 +12,10 @@
 
 #include "compiler/session/shared_framing.h"
 #include "compiler/session/stages.h"
+#include "runtime/fit/samplings.h"
 #include "runtime/image/develop.h"
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
-#include "runtime/fit/samplings.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/video.h"
 #include "runtime/system/temporary_directory.h"

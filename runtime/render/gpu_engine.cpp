@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "runtime/fit/fit_picture.h"
 #include "runtime/gpu/gpu_picture.h"
 #include "runtime/render/drawing.h"
 #include "runtime/render/file_film.h"
-#include "runtime/fit/fit_picture.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"

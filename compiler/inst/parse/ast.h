@@ -113,8 +113,8 @@ struct InstDefinition {
     std::optional<Expression> weight; ///< among the definitions of the same name and parameters
     std::vector<InstGroup> groups;
     std::vector<std::shared_ptr<const InstTest>> tests; ///< of all its conditions, those without groups too
-    std::size_t size = 0; ///< tokens: what enumerating it once costs
-    Span span;            ///< of the name with its parameters
+    std::size_t size = 0;                               ///< tokens: what enumerating it once costs
+    Span span;                                          ///< of the name with its parameters
 };
 
 /// A whole `.inst` file.

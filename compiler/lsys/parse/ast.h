@@ -102,7 +102,7 @@ struct LsysProduction {
     LsysString successor;
     std::optional<Expression> probability;
     std::vector<std::pair<Name, Expression>> locals; ///< of `with`, as they are written
-    Span span; ///< from the label or the first module to the arrow
+    Span span;                                       ///< from the label or the first module to the arrow
 };
 
 /// `angle`, `step`, `width`, `thickness` or `seed`.

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include ""
 #include "compiler/graph/material.h"
-#include "compiler/povray/units.h"
 
 namespace graftal {
 

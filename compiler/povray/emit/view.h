@@ -3,8 +3,8 @@
 #include <string>
 
 #include "compiler/povray/sdl_writer.h"
-#include "compiler/scene/povray_units.h"
 #include "compiler/scene/light_list.h"
+#include "compiler/scene/povray_units.h"
 #include "compiler/scene/scene.h"
 
 namespace graftal {

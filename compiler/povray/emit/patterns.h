@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include ""
 #include "compiler/graph/material.h"
+#include "compiler/scene/povray_units.h"
 
 namespace graftal {
 

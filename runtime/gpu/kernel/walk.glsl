@@ -400,7 +400,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 float begin = near;
                 site.kind = kind;
                 mat3 squeezed = mat3(1.0f);
-                if (frame.faint && kind != KIND_PLANE) {
+                const bool widened = FAINTS && frame.faint && kind != KIND_PLANE;
+                if (widened) {
                     // About its middle, in the frame that it is drawn in.
                     const vec4 ball = nodes(frame.node * NODE_SIZE + NODE_BALL);
                     const vec3 place = place_of(xyz_of(ball), frame, at, origin, direction);
@@ -419,7 +420,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     begin = t;
                     met = false;
                 }
-                normal = squeezed * normal;
+                if (widened) normal = squeezed * normal;
             } else if (at + 1 < MOST_FRAMES) {
                 if (STRETCHED)
                     inner.scale = place_space(at, xyz_of(row0), xyz_of(row1), xyz_of(row2), stretch);
@@ -432,24 +433,29 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 const uint tree = inner.cut ? marks.w : marks.z;
                 if (inner.cut && tree != NONE && (marks.y & NODE_FAINT) != 0u && !inner.faint)
                     inner.faint = detail <= 1.0f;
-                if ((marks.y & NODE_WIDENS) != 0u)
+                if (FAINTS && (marks.y & NODE_WIDENS) != 0u)
                     inner.margin = scene.widths.y * least_half_width(place, -2.0f * radius) / inner.scale *
                                    (STRETCHED ? most_extent(spaces[at + 1]) : 1.0f);
                 frames[at + 1] = inner;
                 if (inner.cut && tree == NONE) {
                     const vec4 proxy0 = nodes(node + NODE_PROXY), proxy1 = nodes(node + NODE_PROXY + 1u),
                                proxy2 = nodes(node + NODE_PROXY + 2u);
-                    mat3 squeezed = mat3(1.0f);
-                    if (inner.faint || (marks.y & NODE_FAINT) != 0u)
-                        squeezed = squeezing(to_world(at + 1, xyz_of(proxy0), xyz_of(proxy1), xyz_of(proxy2)),
-                                             least_half_width(place, radius));
-                    const vec3 o = vec3(dot(xyz_of(proxy0), inner.origin) + proxy0.w,
+                    vec3 o = vec3(dot(xyz_of(proxy0), inner.origin) + proxy0.w,
                                         dot(xyz_of(proxy1), inner.origin) + proxy1.w,
                                         dot(xyz_of(proxy2), inner.origin) + proxy2.w);
-                    const vec3 d = vec3(dot(xyz_of(proxy0), inner.direction), dot(xyz_of(proxy1), inner.direction),
-                                        dot(xyz_of(proxy2), inner.direction));
-                    met = meet_sphere(squeezed * o, squeezed * d, near, far, t, normal);
-                    if (met) normal = rows_transposed(proxy0, proxy1, proxy2, squeezed * normal);
+                    vec3 d = vec3(dot(xyz_of(proxy0), inner.direction), dot(xyz_of(proxy1), inner.direction),
+                                  dot(xyz_of(proxy2), inner.direction));
+                    mat3 squeezed = mat3(1.0f);
+                    const bool widened = FAINTS && (inner.faint || (marks.y & NODE_FAINT) != 0u);
+                    if (widened) {
+                        squeezed = squeezing(to_world(at + 1, xyz_of(proxy0), xyz_of(proxy1), xyz_of(proxy2)),
+                                             least_half_width(place, radius));
+                        o = squeezed * o;
+                        d = squeezed * d;
+                    }
+                    met = meet_sphere(o, d, near, far, t, normal);
+                    if (widened) normal = squeezed * normal;
+                    if (met) normal = rows_transposed(proxy0, proxy1, proxy2, normal);
                     is_proxy = true;
                 } else if (tree != NONE) {
                     next = tree;

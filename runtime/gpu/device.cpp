@@ -157,6 +157,10 @@ struct Gpu::Parts {
     ~Parts() {
         const Api& api = instance.api;
         if (!device) return;
+        if (is_stuck) { // to wait for it could take forever
+            instance.handle = VK_NULL_HANDLE;
+            return;
+        }
         unload();
         free(stage);
         if (fence) api.vkDestroyFence(device, fence, nullptr);
@@ -181,6 +185,8 @@ struct Gpu::Parts {
     Status open(VkPhysicalDevice physical) {
         const Api& api = instance.api;
         memory = instance.memory(physical);
+        if (instance.info(physical).is_processor) longest_wait_ns *= 10; // others may use it, too
+        most_buffer_bytes = instance.properties(physical).limits.maxStorageBufferRange;
         const std::uint32_t family = *instance.queue_family(physical);
         const float priority = 1;
         VkDeviceQueueCreateInfo queues{};
@@ -286,8 +292,8 @@ struct Gpu::Parts {
         if (result == VK_SUCCESS) result = api.vkResetFences(device, 1, &fence);
         if (result == VK_SUCCESS) result = api.vkQueueSubmit(queue, 1, &info, fence);
         if (result == VK_SUCCESS) result = api.vkWaitForFences(device, 1, &fence, VK_TRUE, longest_wait_ns);
-        if (result == VK_TIMEOUT)
-            return Status::failure("GPU: the device takes too long for a part of the picture");
+        is_stuck = result == VK_TIMEOUT;
+        if (is_stuck) return Status::failure("GPU: the device takes too long for a part of the picture");
         return result == VK_SUCCESS ? Status() : failure("running the kernel", result);
     }
 
@@ -314,10 +320,12 @@ struct Gpu::Parts {
     }
 
     static constexpr VkDeviceSize stage_bytes = 16 << 20;
-    static constexpr std::uint64_t longest_wait_ns = 60'000'000'000;
+    std::uint64_t longest_wait_ns = 60'000'000'000;
 
     vulkan::Instance instance;
     VkPhysicalDeviceMemoryProperties memory{};
+    VkDeviceSize most_buffer_bytes = 0;
+    bool is_stuck = false; ///< it has not come to the end of a kernel
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;
     VkCommandPool pool = VK_NULL_HANDLE;
@@ -356,7 +364,7 @@ std::unique_ptr<Gpu> Gpu::open(std::size_t number, Status& status) {
 }
 
 Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std::uint32_t push_bytes,
-                 std::uint32_t constant) {
+                 std::span<const std::uint32_t> constants) {
     parts_->unload();
     const Api& api = parts_->instance.api;
     const VkDevice device = parts_->device;
@@ -390,9 +398,12 @@ Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std:
     of_pipeline.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
     of_pipeline.stage.module = module;
     of_pipeline.stage.pName = "main";
-    const VkSpecializationMapEntry entry{0, 0, sizeof(constant)};
-    const VkSpecializationInfo constants{1, &entry, sizeof(constant), &constant};
-    of_pipeline.stage.pSpecializationInfo = &constants;
+    std::vector<VkSpecializationMapEntry> entries;
+    for (std::uint32_t i = 0; i < constants.size(); ++i)
+        entries.push_back({i, 4 * i, 4});
+    const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                              constants.size_bytes(), constants.data()};
+    of_pipeline.stage.pSpecializationInfo = &specialization;
     of_pipeline.layout = parts_->layout;
     if (result == VK_SUCCESS)
         result =
@@ -419,6 +430,8 @@ Status Gpu::add_buffer(std::span<const std::byte> bytes, std::size_t size) {
     const Api& api = parts.instance.api;
     constexpr VkDeviceSize least = 16;
     const VkDeviceSize whole = (std::max<VkDeviceSize>({bytes.size(), size, least}) + 15) / 16 * 16;
+    if (whole > parts.most_buffer_bytes)
+        return Status::failure(fmt::format("GPU: the device takes no buffer of {} bytes", whole));
     Buffer& buffer = parts.buffers.emplace_back();
     constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;

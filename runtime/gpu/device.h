@@ -35,10 +35,10 @@ class Gpu {
     Gpu& operator=(const Gpu&) = delete;
 
     /// Makes a kernel of a SPIR-V text whose entry is main(), with `buffers` storage buffers at the bindings
-    /// from 0 on, `push_bytes` of push constants, and a value of its constant 0. It takes the place of the
+    /// from 0 on, `push_bytes` of push constants, and values of its constants. It takes the place of the
     /// one before, whose buffers go.
     Status load(std::span<const std::uint32_t> spirv, std::size_t buffers, std::uint32_t push_bytes,
-                std::uint32_t constant);
+                std::span<const std::uint32_t> constants);
 
     /// A new buffer at the next binding, of zeros beyond `bytes`; at least one word.
     Status add_buffer(std::span<const std::byte> bytes, std::size_t size = 0);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "compiler/primitives/tapered.h"
@@ -20,6 +21,8 @@ namespace {
 
 /// Entries are words of 32 bits that hold their kind, too.
 constexpr std::size_t most_edges = ENTRY_NUMBER;
+/// Memory that an instance takes while the arrays are made.
+constexpr std::uint64_t bytes_an_edge = 512;
 
 glm::vec4 of_paint(const Paint& paint) {
     return {paint.fixed[0], paint.fixed[1], paint.fixed[2], paint.open};
@@ -34,15 +37,31 @@ Box box_of(const FlatEdge& edge) {
     return {{edge.box[0], edge.box[1], edge.box[2]}, {edge.box[3], edge.box[4], edge.box[5]}};
 }
 
+/// Whether the map of an edge scales evenly, as single precision sees it.
+bool is_similarity(const FlatEdge& edge) {
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k <= i; ++k) {
+            double product = 0;
+            for (std::size_t row = 0; row < 3; ++row)
+                product +=
+                    edge.child_from_parent[3 * i + row].value() * edge.child_from_parent[3 * k + row].value();
+            if (!(std::abs(product * edge.stretch * edge.stretch - (i == k ? 1 : 0)) < 1e-6)) return false;
+        }
+    return true;
+}
+
 class Flattener {
   public:
     /// `pictured`: some material has a picture.
     Flattener(const FlatGraph& graph, bool pictured, FlatModel& flat)
         : graph_(graph), pictured_(pictured), flat_(flat) {}
 
-    void run(Vec3 eye, const Box& drawn, std::uint32_t root_steps) {
-        for (const Primitive& primitive : graph_.primitives)
+    /// False where that would take too much memory.
+    bool run(Vec3 eye, const Box& drawn, std::uint32_t root_steps, std::uint64_t most_bytes) {
+        for (const Primitive& primitive : graph_.primitives) {
             meshes_.push_back(mesh_of(primitive));
+            if (flat_.bytes() > most_bytes) return false;
+        }
         add_root(eye);
         for (const FlatEdge& edge : graph_.edges)
             add_edge(edge);
@@ -51,6 +70,7 @@ class Flattener {
         std::vector<FlatItem> root = {{{drawn.min - eye, drawn.max - eye}, ENTRY_PART}};
         flat_.scene.counts.y = build_flat_boxes(root, flat_.boxes);
         flat_.scene.counts.z = root_steps;
+        return true;
     }
 
   private:
@@ -75,6 +95,8 @@ class Flattener {
             flat_.parts.emplace_back(m[row].high, m[3 + row].high, m[6 + row].high, edge.origin[row].high);
         flat_.parts.emplace_back(edge.stretch, flat_bits(edge.child),
                                  flat_bits(material_number(edge.material)), flat_bits(edge.levels));
+        flat_.stretched =
+            flat_.stretched || (graph_.nodes[edge.child].primitive == flat_none && !is_similarity(edge));
         flat_.looks.push_back(of_paint(edge.tint));
         flat_.looks.emplace_back(edge.turns, 0, 0, 0);
     }
@@ -185,6 +207,14 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
     why = lack(request);
     if (!why.empty()) return std::nullopt;
     const TraceGround ground(request.prepared, request.detail.work_seconds);
+    std::uint64_t edges = 0;
+    for (const CutNode& node : ground.layers.cut.nodes)
+        edges += edge_count(node, false) + node.stop_edges.size();
+    const std::uint64_t most_bytes = request.detail.memory_bytes;
+    if (edges > std::min<std::uint64_t>(most_edges, most_bytes / bytes_an_edge)) {
+        why = fmt::format("{} instances within {} MiB", edges, most_bytes >> 20);
+        return std::nullopt;
+    }
     const std::optional<FlatGraph> graph =
         flat_graph(ground.layers, ground.bounds, request.detail.error_px, most_edges);
     if (!graph) {
@@ -195,11 +225,17 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
     const bool pictured = std::ranges::any_of(request.textures.of_material,
                                               [](const auto& texture) { return texture != nullptr; });
     constexpr double far = flat_endless;
-    Flattener(*graph, pictured, flat)
-        .run(request.view.camera.location,
-             ground.layers.cut.nodes[graph->root].unbounded ? Box{Vec3(-far), Vec3(far)}
-                                                            : ground.bounds.node[graph->root],
-             request.prepared.root_steps);
+    const bool fits =
+        Flattener(*graph, pictured, flat)
+            .run(request.view.camera.location,
+                 ground.layers.cut.nodes[graph->root].unbounded ? Box{Vec3(-far), Vec3(far)}
+                                                                : ground.bounds.node[graph->root],
+                 request.prepared.root_steps, most_bytes);
+    if (!fits) {
+        why = fmt::format("such fine meshes within {} MiB", most_bytes >> 20);
+        return std::nullopt;
+    }
+    flat.source = ground.layers.source;
     add_light(request, flat);
     return flat;
 }

@@ -26,6 +26,8 @@ using glm::vec4;
 struct FlatModel {
     std::vector<glm::vec4> boxes, parts, nodes, looks, materials, triangles;
     std::vector<float> texels;
+    std::vector<std::uint32_t> source; ///< by node: that of the prepared graph
+    bool stretched = false;            ///< some map of an object scales unevenly
     kernel_layout::Scene scene{};
 
     std::uint64_t bytes() const;

@@ -21,7 +21,7 @@ struct Job {
     std::array<std::uint32_t, 4> window, picture, sequence;
 };
 
-constexpr std::size_t film_binding = 8, sums_a_pixel = 2;
+constexpr std::size_t film_binding = 8;
 /// Pixels along each side of a group's tile.
 constexpr int group_side = 8;
 constexpr double seconds_a_piece = 0.03;
@@ -39,13 +39,15 @@ GpuPicture::GpuPicture(Gpu& gpu, ImageSize size, const Tile& window, const Sampl
     : gpu_(gpu), size_(size), window_(window), samples_(samples) {}
 
 Status GpuPicture::prepare(const FlatModel& model, std::uint32_t frames) {
-    Status status = gpu_.load(picture_spirv, film_binding + 1, sizeof(Job), frames);
+    const std::array<std::uint32_t, 4> constants = {frames, samples_.aovs, model.stretched ? frames : 2,
+                                                    model.scene.widths.z > 0};
+    Status status = gpu_.load(picture_spirv, film_binding + 1, sizeof(Job), constants);
     const std::span<const std::byte> scene = std::as_bytes(std::span(&model.scene, 1));
     for (const std::span<const std::byte> bytes :
          {bytes_of(model.boxes), bytes_of(model.parts), bytes_of(model.nodes), bytes_of(model.looks),
           bytes_of(model.materials), bytes_of(model.triangles), bytes_of(model.texels), scene})
         if (status.ok()) status = gpu_.add_buffer(bytes);
-    if (status.ok()) status = gpu_.add_buffer({}, window_.pixels() * sums_a_pixel * sizeof(glm::vec4));
+    if (status.ok()) status = gpu_.add_buffer({}, window_.pixels() * sums_a_pixel() * sizeof(glm::vec4));
     return status;
 }
 
@@ -83,16 +85,46 @@ Status GpuPicture::sample(std::uint32_t count, const std::function<bool(double)>
     return {};
 }
 
+Status GpuPicture::read_sums(std::vector<glm::vec4>& sums) {
+    sums.resize(window_.pixels() * sums_a_pixel());
+    return gpu_.read(film_binding, std::as_writable_bytes(std::span(sums)));
+}
+
+Status GpuPicture::read_aovs(const FlatModel& model, AovPicture& aovs, double& lost) {
+    std::vector<glm::vec4> sums;
+    if (Status status = read_sums(sums); !status.ok()) return status;
+    const float whole = samples_.lattice > 0 ? static_cast<float>(samples_.lattice * samples_.lattice)
+                                             : static_cast<float>(done_);
+    aovs.assign(window_.pixels(), {});
+    lost = 0;
+    for (std::size_t i = 0; i < aovs.size(); ++i) {
+        const glm::vec4 sum = sums[4 * i], normals = sums[4 * i + 1], albedos = sums[4 * i + 2],
+                        nearest = sums[4 * i + 3];
+        AovPixel& pixel = aovs[i];
+        const std::uint32_t node =
+            static_cast<std::uint32_t>(nearest.x) << 16 | static_cast<std::uint32_t>(nearest.y);
+        pixel.node = node < model.source.size() ? model.source[node] : node;
+        pixel.levels = static_cast<std::uint32_t>(nearest.z);
+        lost += nearest.w;
+        if (!(sum.x > 0)) continue;
+        pixel.coverage = sum.x / whole;
+        pixel.depth = sum.y / sum.x;
+        for (int c = 0; c < 3; ++c) {
+            pixel.normal[c] = normals[c] / sum.x;
+            pixel.albedo[c] = albedos[c] / sum.x;
+        }
+    }
+    return {};
+}
+
 Status GpuPicture::read(const Film& film, double noise_255, Image& picture, Seen& seen) {
-    std::vector<glm::vec4> sums(window_.pixels() * sums_a_pixel);
-    if (Status status = gpu_.read(film_binding, std::as_writable_bytes(std::span(sums))); !status.ok())
-        return status;
+    std::vector<glm::vec4> sums;
+    if (Status status = read_sums(sums); !status.ok()) return status;
     seen = {};
     double noise = 0;
     std::uint64_t measured = 0;
     for (std::size_t i = 0; i < window_.pixels(); ++i) {
-        const glm::vec4& sum = sums[sums_a_pixel * i];
-        const glm::vec4& spread = sums[sums_a_pixel * i + 1];
+        const glm::vec4 sum = sums[2 * i], spread = sums[2 * i + 1];
         for (int c = 0; c < 3; ++c)
             picture.pixels[3 * i + static_cast<std::size_t>(c)] = sum.w > 0 ? sum[c] / sum.w : 0;
         seen.samples += static_cast<double>(sum.w);

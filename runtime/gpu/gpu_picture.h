@@ -5,6 +5,7 @@
 
 #include "runtime/gpu/device.h"
 #include "runtime/gpu/flat_model.h"
+#include "runtime/trace/aovs.h"
 #include "runtime/trace/tile.h"
 
 namespace graftal {
@@ -17,6 +18,7 @@ class GpuPicture {
     struct Samples {
         std::uint32_t lattice = 0; ///< squares along each side of a pixel; 1: its middle; 0: by chance
         std::uint64_t sequence = 0;
+        bool aovs = false; ///< read_aovs() is wanted, in place of light
     };
 
     /// `window`: the part of a picture of this size that is drawn. The device outlives it.
@@ -48,9 +50,16 @@ class GpuPicture {
     /// of the window.
     Status read(const Film& film, double noise_255, Image& picture, Seen& seen);
 
+    /// Gives the values of each pixel of the window, and parts that rays had no room for. Requires
+    /// Samples::aovs; `model` is the one prepared.
+    Status read_aovs(const FlatModel& model, AovPicture& aovs, double& lost);
+
     double seconds() const { return seconds_; } ///< that the device has worked
 
   private:
+    std::size_t sums_a_pixel() const { return samples_.aovs ? 4 : 2; }
+    Status read_sums(std::vector<glm::vec4>& sums);
+
     Gpu& gpu_;
     ImageSize size_;
     Tile window_;

@@ -24,6 +24,8 @@ namespace {
 constexpr double steps_a_second = 2e9;
 /// Passes of a progressive picture: each has so many times the samples of the one before.
 constexpr std::uint32_t growth_of_passes = 4;
+/// Samples for AOVs, whose noise is only that of edges.
+constexpr std::uint32_t most_aov_samples = 64;
 
 /// One picture by a device, as far as that goes.
 class GpuDrawing {
@@ -68,20 +70,33 @@ class GpuDrawing {
         const std::uint32_t most = lattice > 0 ? GpuPicture::lattice_points(lattice)
                                                : static_cast<std::uint32_t>(plan_.wanted.most_samples);
         GpuPicture drawing(gpu, view_.size, window_, {lattice, options_.sequence});
+        const auto goes_on = [&](double share) {
+            tell(share);
+            return !cancel_.raised();
+        };
+        if (options_.aovs) {
+            double lost = 0;
+            GpuPicture aovs(gpu, view_.size, window_, {lattice, options_.sequence, true});
+            Status status = aovs.prepare(model, frames);
+            if (status.ok())
+                status = aovs.sample(lattice > 0 ? most : std::min(most, most_aov_samples), goes_on);
+            if (status.ok()) status = aovs.read_aovs(model, aovs_, lost);
+            if (!status.ok()) return status;
+            fits = lost == 0;
+            if (!fits) return no_room();
+        }
         if (Status status = drawing.prepare(model, frames); !status.ok()) return status;
         const double most_steps = options_.work(view_.quality) * steps_a_second;
         // The first sample tells what the others take, and whether they have room.
         for (std::uint32_t done = 0, count = 1;;) {
-            Status status = drawing.sample(count, [&](double share) {
-                tell((done + share * (count - done)) / most);
-                return !cancel_.raised();
-            });
+            Status status = drawing.sample(
+                count, [&](double share) { return goes_on((done + share * (count - done)) / most); });
             if (!status.ok() && !(cancel_.raised() && has_begun())) return status;
             GpuPicture::Seen seen;
             if (Status read = drawing.read(view_.film, plan_.wanted.noise_255, picture_, seen); !read.ok())
                 return read;
-            fits = !(seen.lost > 0);
-            if (!fits) return Status::failure("its kernel has no room for parts that lie so deep");
+            fits = seen.lost == 0;
+            if (!fits) return no_room();
             done = count;
             const double left = most_steps - seen.steps;
             const auto affordable = static_cast<std::uint32_t>(
@@ -90,7 +105,9 @@ class GpuDrawing {
             if (last || options_.progressive) {
                 note(seen, lattice > 0 ? 0 : count, drawing.seconds());
                 film_.tile(window_, picture_, pass_);
-                if (Status shown = film_.end(pass_++, picture_, nullptr); !shown.ok()) return shown;
+                if (Status shown = film_.end(pass_++, picture_, options_.aovs ? &aovs_ : nullptr);
+                    !shown.ok())
+                    return shown;
                 if (report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();
             }
             report_.finished = finished && status.ok();
@@ -99,6 +116,8 @@ class GpuDrawing {
             count = std::min(count, most);
         }
     }
+
+    static Status no_room() { return Status::failure("its kernel has no room for parts that lie so deep"); }
 
     static std::uint32_t lattice_of(const Sampling& wanted) {
         if (wanted.most_samples > 0) return 0;
@@ -135,6 +154,7 @@ class GpuDrawing {
     FileFilm file_;
     PictureFilm& film_;
     Image picture_;
+    AovPicture aovs_; ///< empty where none are asked for
     NativeReport report_;
     int pass_ = 0;
     Stopwatch watch_;
@@ -204,10 +224,7 @@ constinit const Engine gpu_engine = {
         return Status::failure(
             fmt::format("GPU: {}: give '--engine native', or install a driver of Vulkan", why));
     },
-    .refusal = [](const RenderOptions& options) -> std::string {
-        if (options.aovs) return "--aovs: the GPU draws light alone: give '--engine native'";
-        return native_engine.refusal(options);
-    },
+    .refusal = [](const RenderOptions& options) -> std::string { return native_engine.refusal(options); },
     .compile = [](Session& session, const StageOptions& options, Compilation& compilation) -> bool {
         return session.viewed(options, compilation) != nullptr;
     },

@@ -58,6 +58,25 @@ class ModelText {
         return text_ + "}\n";
     }
 
+    std::string lsys() {
+        const auto turns = [&] {
+            std::string text;
+            for (const char* const turn : {"+", "&", "/"})
+                text += fmt::format("{}({:.2f})", turn, between(-70, 70));
+            return text;
+        };
+        text_ = scene() + fmt::format("lsys random {{\n  steps {}\n  axiom A(1)\n", 3 + below(4));
+        for (const char* const from : {"A", "B"}) {
+            text_ +=
+                fmt::format("  {}(l) -> !({:.3f}*l)F({:.3f}*l)", from, between(0.05, 0.2), between(0.3, 0.6));
+            for (int i = 0; i < 2 + below(2); ++i)
+                text_ += fmt::format("[{}{}({:.3f}*l)]", turns(), one_in(2) ? "A" : "B", between(0.4, 0.75));
+            text_ += fmt::format("{}F({:.3f}*l){}({:.3f}*l)\n", turns(), between(0.2, 0.4),
+                                 one_in(2) ? "A" : "B", between(0.5, 0.8));
+        }
+        return text_ + "}\n";
+    }
+
   private:
     double between(double low, double high) {
         return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
@@ -124,6 +143,10 @@ std::string random_rifs(std::uint64_t seed) {
 
 std::string random_inst(std::uint64_t seed) {
     return ModelText(seed).inst();
+}
+
+std::string random_lsys(std::uint64_t seed) {
+    return ModelText(seed).lsys();
 }
 
 } // namespace graftal

@@ -10,5 +10,7 @@ namespace graftal {
 /// which is in front matters; no two faces lie in one plane, where it would be left to rounding.
 std::string random_rifs(std::uint64_t seed);
 std::string random_inst(std::uint64_t seed);
+/// A plant of round branches, which lie in each other where they meet.
+std::string random_lsys(std::uint64_t seed);
 
 } // namespace graftal

@@ -18,7 +18,7 @@ namespace graftal {
 namespace {
 
 /// A background that no surface shows.
-const std::string magenta = "\nbackground: 0.93, 0.07, 0.91\n";
+const std::string before_magenta = "\nbackground: 0.93, 0.07, 0.91\n";
 
 std::string model_of(const std::string& path) {
     std::string text;
@@ -64,7 +64,7 @@ class CulledParts : public testing::TestWithParam<LitModel> {
   protected:
     static std::string text(const std::string& more) {
         const LitModel& model = GetParam();
-        return (model.text.empty() ? model_of(model.file) : model.text) + magenta + more;
+        return (model.text.empty() ? model_of(model.file) : model.text) + before_magenta + more;
     }
 
     static double native(const std::string& more, double error_px, DefaultLight light) {

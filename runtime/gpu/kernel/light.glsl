@@ -146,8 +146,19 @@ void meet_level_at(float t, float height, uint material, INOUT(Hit) hit) {
     hit.normal = vec3(0.0f, 1.0f, 0.0f);
     hit.material = material;
     hit.rgb = xyz_of(materials(material * MATERIAL_SIZE));
+    hit.node = NONE - 1u;
+    hit.levels = 0u;
     hit.is_level = true;
     hit.level = height;
+}
+
+/// walk(), and the ground.
+bool meet_first(vec3 o, vec3 d, float least, float most, bool any, INOUT(Hit) hit) {
+    const bool found = walk(o, d, least, most, any, hit);
+    float t;
+    if (!(scene.ground.y > 0.0f && meet_level(scene.ground.x, o, d, least, found ? hit.t : most, t))) return found;
+    meet_level_at(t, scene.ground.x, scene.visits.z, hit);
+    return true;
 }
 
 void share_light(Inside inside, INOUT(Point) point) {
@@ -431,13 +442,7 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
         Hit hit;
         const bool any = to_light && scene.looks.y != 0u;
         const float farthest = min(most, scene.limits.x);
-        bool found = walk(from, towards, least, farthest, any, hit);
-        float level;
-        if (scene.ground.y > 0.0f &&
-            meet_level(scene.ground.x, from, towards, least, found ? hit.t : farthest, level)) {
-            found = true;
-            meet_level_at(level, scene.ground.x, scene.visits.z, hit);
-        }
+        const bool found = meet_first(from, towards, least, farthest, any, hit);
         bool ends = false;
         if (to_light) {
             if (!found) {
@@ -458,6 +463,7 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
             }
         } else {
             caught = 0.0f;
+            float level;
             if (scene.catcher.w > 0.0f && meet_level(scene.catcher.y, path.origin, path.direction, path.least,
                                                      found ? hit.t : scene.limits.x, level)) {
                 caught = caught_at(path.origin + level * path.direction);

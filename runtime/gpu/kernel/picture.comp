@@ -16,6 +16,7 @@
 #define LIMIT_LEVELS 6
 #define LIMIT_RATIO 1.5f
 #define FRAMES Frame frames[MOST_FRAMES];
+#define SPACES mat3 spaces[MOST_SPACES];
 #define STEPS uint steps = 0u, lost = 0u;
 #define WAITING_PATHS Path waiting_paths[MOST_WAITING];
 
@@ -23,6 +24,10 @@
 
 layout(constant_id = 0) const int MOST_FRAMES = 64;
 const int MOST_LATER = 5 * MOST_FRAMES;
+layout(constant_id = 1) const bool AOVS = false; // in place of light
+layout(constant_id = 2) const int MOST_SPACES = 2; // as many as frames where some map of an object scales unevenly
+const bool STRETCHED = MOST_SPACES > 2;
+layout(constant_id = 3) const bool FAINTS = false; // sets without area are drawn wider than they are
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly restrict buffer Boxes { vec4 all_boxes[]; };
@@ -81,5 +86,8 @@ void main() {
     const uvec2 pixel = job.window.xy + in_window;
     const uint at = job.sequence.z + in_window.y * job.window.z + in_window.x;
     const vec2 size = vec2(job.picture.xy);
-    add_samples(pixel, at, size, job.sequence.xy, job.picture.z, job.picture.w, job.sequence.w);
+    if (AOVS)
+        add_aovs(pixel, at, size, job.sequence.xy, job.picture.z, job.picture.w, job.sequence.w);
+    else
+        add_samples(pixel, at, size, job.sequence.xy, job.picture.z, job.picture.w, job.sequence.w);
 }

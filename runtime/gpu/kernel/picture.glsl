@@ -1,6 +1,7 @@
 // Pixels: camera rays, samples and their mean (PictureTracer of runtime/trace).
 
 #define SUMS_A_PIXEL 2u
+#define AOVS_A_PIXEL 4u
 
 /// The ray through a point of the picture, in pixels.
 void camera_ray(vec2 at, vec2 size, INOUT(Stream) stream, OUT(vec3) o, OUT(vec3) d) {
@@ -46,36 +47,50 @@ float filter_offset(float place) {
     return mix(texels(scene.tables.x + step), texels(scene.tables.x + step + 1u), share);
 }
 
+/// A sample's place in its pixel, and its weight there.
+struct Place {
+    vec2 in_pixel;
+    float weight;
+};
+
+/// With `lattice` the samples are those of a lattice of as many squares along each side of the pixel, as POV-Ray
+/// takes it, or with 1 the pixel's middle alone.
+Place place_of_sample(uint i, uint lattice, INOUT(Stream) stream) {
+    Place place;
+    place.weight = 1.0f;
+    place.in_pixel = vec2(0.5f);
+    if (lattice == 0u) {
+        const vec2 chosen = next_place(stream);
+        place.in_pixel += vec2(filter_offset(chosen.x), filter_offset(chosen.y));
+    } else if (lattice > 1u) {
+        const uint x = i % (lattice + 1u), y = i / (lattice + 1u);
+        place.in_pixel = vec2(float(x), float(y)) / float(lattice);
+        place.weight = (x > 0u && x < lattice ? 1.0f : 0.5f) * (y > 0u && y < lattice ? 1.0f : 0.5f);
+    }
+    return place;
+}
+
+Stream stream_of_pixel(uvec2 pixel, uvec2 sequence, uint i) {
+    return stream_of(uvec2(pixel.x, pixel.y ^ (sequence.x << 16)), i);
+}
+
 /// Adds samples `first` to `first + count` to a pixel. `film`: the weighted sum of its light and the weights;
 /// then the mean and the sum of squares of the luminance, the steps of rays in thousands, and parts that
-/// had no room. With `lattice` the samples are those of a lattice of
-/// as many squares along each side of the pixel, as POV-Ray takes it, or with 1 the pixel's middle alone.
+/// had no room.
 void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint count, uint lattice) {
     vec4 sum = film[SUMS_A_PIXEL * at], noise = film[SUMS_A_PIXEL * at + 1u];
-    const uvec2 seed = uvec2(pixel.x, pixel.y ^ (sequence.x << 16));
-    const uint points = lattice == 1u ? 1u : lattice + 1u;
     steps = 0u;
     for (uint i = first; i < first + count; ++i) {
-        float weight = 1.0f;
-        vec2 in_pixel = vec2(0.5f);
-        Stream stream = stream_of(seed, i);
-        if (lattice > 0u) {
-            const uint x = i % points, y = i / points;
-            if (points > 1u) {
-                in_pixel = vec2(float(x), float(y)) / float(lattice);
-                weight = (x > 0u && x < lattice ? 1.0f : 0.5f) * (y > 0u && y < lattice ? 1.0f : 0.5f);
-            }
-        } else {
-            if (sum.w > 0.0f && uint(sum.w) % 16u == 0u && error_255(sum.w, noise.x, noise.y) < scene.limits.z)
-                break;
-            const vec2 place = next_place(stream);
-            in_pixel += vec2(filter_offset(place.x), filter_offset(place.y));
-        }
+        if (lattice == 0u && sum.w > 0.0f && uint(sum.w) % 16u == 0u &&
+            error_255(sum.w, noise.x, noise.y) < scene.limits.z)
+            break;
+        Stream stream = stream_of_pixel(pixel, sequence, i);
+        const Place place = place_of_sample(i, lattice, stream);
         vec3 o;
         vec3 d;
-        camera_ray(vec2(float(pixel.x), float(pixel.y)) + in_pixel, size, stream, o, d);
+        camera_ray(vec2(float(pixel.x), float(pixel.y)) + place.in_pixel, size, stream, o, d);
         const vec3 light = radiance(o, d, stream);
-        sum += vec4(weight * light, weight);
+        sum += vec4(place.weight * light, place.weight);
         const float luminance = dot(light, vec3(0.2126f, 0.7152f, 0.0722f));
         const float before = luminance - noise.x;
         noise.x += before / sum.w;
@@ -85,4 +100,37 @@ void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, ui
     noise.w += float(lost);
     film[SUMS_A_PIXEL * at] = sum;
     film[SUMS_A_PIXEL * at + 1u] = noise;
+}
+
+/// Likewise, for AovSum of runtime/trace. `film`: the weights that meet a surface, their depths, and how far from the
+/// middle the nearest sample is; normals; albedos; that sample's node, as two halves, its levels, and parts that had no
+/// room.
+void add_aovs(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint count, uint lattice) {
+    vec4 sum = film[AOVS_A_PIXEL * at], normals = film[AOVS_A_PIXEL * at + 1u],
+         albedos = film[AOVS_A_PIXEL * at + 2u], nearest = film[AOVS_A_PIXEL * at + 3u];
+    for (uint i = first; i < first + count; ++i) {
+        Stream stream = stream_of_pixel(pixel, sequence, i);
+        const Place place = place_of_sample(i, lattice, stream);
+        vec3 o;
+        vec3 d;
+        camera_ray(vec2(float(pixel.x), float(pixel.y)) + place.in_pixel, size, stream, o, d);
+        Hit hit;
+        const bool found = meet_first(o, d, 0.0f, scene.limits.x, false, hit);
+        const vec2 off = place.in_pixel - vec2(0.5f);
+        if (i == 0u || dot(off, off) < sum.z) {
+            const uint node = found ? hit.node : NONE;
+            sum.z = dot(off, off);
+            nearest = vec4(float(node >> 16), float(node & 0xffffu), found ? float(hit.levels) : 0.0f, nearest.w);
+        }
+        if (!found) continue;
+        sum.x += place.weight;
+        sum.y += place.weight * dot(o + hit.t * d, xyz_of(scene.direction));
+        normals += vec4((dot(hit.normal, d) > 0.0f ? -place.weight : place.weight) * hit.normal, 0.0f);
+        albedos += vec4(place.weight * hit.rgb, 0.0f);
+    }
+    nearest.w += float(lost);
+    film[AOVS_A_PIXEL * at] = sum;
+    film[AOVS_A_PIXEL * at + 1u] = normals;
+    film[AOVS_A_PIXEL * at + 2u] = albedos;
+    film[AOVS_A_PIXEL * at + 3u] = nearest;
 }

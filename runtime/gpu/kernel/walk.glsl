@@ -8,6 +8,8 @@ struct Hit {
     vec3 normal; // in the world, of unit length
     vec3 rgb;    // opaque, with all tints in front
     uint material;
+    uint node;     // the last on the way that is no primitive
+    uint levels;   // that the way has used up
     bool is_level; // it lies exactly at this height
     float level;
 };
@@ -37,18 +39,6 @@ float least_half_width(vec3 from_eye, float radius) {
     return scene.widths.x * max(distance - radius, scene.projection.y) / scene.projection.x;
 }
 
-/// Factors by which a shape grows along its axes, so that a ball of this radius fits in; the rows are those of the map
-/// into its frame, and taken to be at right angles.
-vec3 widening(float radius, vec3 row0, vec3 row1, vec3 row2) {
-    return max(vec3(1.0f), radius * vec3(length(row0), length(row1), length(row2)));
-}
-
-/// The place in the world of a frame's point nearest to the ray.
-vec3 place_of(vec3 point, Frame frame, vec3 origin, vec3 direction) {
-    const float along = dot(point - frame.origin, frame.direction) / dot(frame.direction, frame.direction);
-    return origin + (frame.base + along * frame.unit) * direction;
-}
-
 /// The detail of a length of 1 about a point of the world: Projection::detail_per_unit().
 float detail_per_unit(vec3 from_eye, float radius) {
     if (scene.projection.w == 0.0f) return FAR;
@@ -76,10 +66,91 @@ vec3 normal_above(uint part, vec3 normal) {
     return length2 > 0.0f ? n * inversesqrt(length2) : normal;
 }
 
-FRAMES
-
 /// Boxes and parts that all rays of the thread went to, and parts that they had no room for.
 STEPS
+
+FRAMES
+
+/// The linear parts of the maps from the frames to the world, less the scale, where STRETCHED: the norm of a
+/// product of maps that stretch unevenly is no product.
+SPACES
+
+/// largest_stretch() of compiler/support.
+float largest_stretch(mat3 map) {
+    const vec3 a = map[0], b = map[1], c = map[2];
+    const float mean = (dot(a, a) + dot(b, b) + dot(c, c)) / 3.0f;
+    const float x = dot(a, a) / mean - 1.0f, y = dot(b, b) / mean - 1.0f, z = dot(c, c) / mean - 1.0f;
+    const float xy = dot(a, b) / mean, yz = dot(b, c) / mean, zx = dot(c, a) / mean;
+    const float p2 = (x * x + y * y + z * z + 2.0f * (xy * xy + yz * yz + zx * zx)) / 6.0f;
+    if (!(p2 > 1e-12f)) return sqrt(mean);
+    const float p = sqrt(p2);
+    const float determinant = x * (y * z - yz * yz) - xy * (xy * z - yz * zx) + zx * (xy * yz - y * zx);
+    const float angle = acos(clamp(0.5f * determinant / (p2 * p), -1.0f, 1.0f)) / 3.0f;
+    return sqrt(mean * (1.0f + 2.0f * p * cos(angle)));
+}
+
+/// The inverse of the matrix of these rows.
+mat3 inverse_of(vec3 row0, vec3 row1, vec3 row2) {
+    const vec3 x = cross(row1, row2), y = cross(row2, row0), z = cross(row0, row1);
+    return mat3(x, y, z) / dot(row0, x);
+}
+
+/// The linear map to the world from within frame `at`, by the rows of that into its part.
+mat3 to_world(int at, vec3 row0, vec3 row1, vec3 row2) {
+    const mat3 part = frames[at].scale * inverse_of(row0, row1, row2);
+    return STRETCHED ? spaces[at] * part : part;
+}
+
+/// Half axes of the image of a ball that are shorter than the width become as long: the map by which rays meet
+/// that, in the ball's own space (least_width.h). Jacobi's turns find the axes.
+mat3 squeezing(mat3 world_from_ball, float width) {
+    const mat3 widths = world_from_ball / width;
+    mat3 squares = transpose(widths) * widths, axes = mat3(1.0f);
+    for (int turn = 0; turn < 12; ++turn) {
+        const int p = turn % 3, q = (p + 1) % 3;
+        if (!(abs(squares[p][q]) > 1e-7f * sqrt(squares[p][p] * squares[q][q]))) continue;
+        const float ratio = 0.5f * (squares[q][q] - squares[p][p]) / squares[p][q];
+        const float tangent = (ratio < 0.0f ? -1.0f : 1.0f) / (abs(ratio) + sqrt(ratio * ratio + 1.0f));
+        const float cosine = inversesqrt(tangent * tangent + 1.0f);
+        mat3 turned = mat3(1.0f);
+        turned[p][p] = cosine;
+        turned[q][q] = cosine;
+        turned[p][q] = -tangent * cosine;
+        turned[q][p] = tangent * cosine;
+        squares = transpose(turned) * squares * turned;
+        axes = axes * turned;
+    }
+    mat3 shares = mat3(1.0f);
+    for (int i = 0; i < 3; ++i)
+        shares[i][i] = min(sqrt(max(squares[i][i], 0.0f)), 1.0f);
+    return axes * shares * transpose(axes);
+}
+
+/// Half of the largest extent along an axis of a frame that a ball of the world has there, which has 1.
+float most_extent(mat3 space) {
+    const vec3 bc = cross(space[1], space[2]), ca = cross(space[2], space[0]), ab = cross(space[0], space[1]);
+    return max(length(bc), max(length(ca), length(ab))) / abs(dot(space[0], bc));
+}
+
+/// Places a part, whose map has these rows, into the space of frame `at`; the norm of the map to the world.
+float place_space(int at, vec3 row0, vec3 row1, vec3 row2, float stretch) {
+    if (at == 0) {
+        spaces[1] = mat3(1.0f); // the root's map only scales evenly
+        return stretch;
+    }
+    const mat3 space = spaces[at] * inverse_of(row0, row1, row2) / stretch;
+    const float growth = largest_stretch(space);
+    spaces[at + 1] = space / growth;
+    return frames[at].scale * stretch * growth;
+}
+
+/// A point of frame `at` in the world. Where no space tells how that is turned: the place of the ray nearest to it.
+vec3 place_of(vec3 point, Frame frame, int at, vec3 origin, vec3 direction) {
+    const float along = dot(point - frame.origin, frame.direction) / dot(frame.direction, frame.direction);
+    const vec3 place = origin + (frame.base + along * frame.unit) * direction;
+    if (!STRETCHED) return place;
+    return place + frame.scale * (spaces[at] * (point - frame.origin - along * frame.direction));
+}
 
 /// The point of a surface for its picture.
 struct Site {
@@ -140,6 +211,8 @@ void look_along(int last, uint part, bool is_proxy, Site site, INOUT(Hit) hit) {
     vec4 tint = vec4(0.0f, 0.0f, 0.0f, 1.0f);
     vec3 inherited = xyz_of(materials(0u));
     hit.material = 0u;
+    hit.node = frames[last].node;
+    hit.levels = 0u;
     uint above = NONE;
     const int end = is_proxy ? last : last + 1;
     for (int i = 1; i <= end; ++i) {
@@ -149,6 +222,7 @@ void look_along(int last, uint part, bool is_proxy, Site site, INOUT(Hit) hit) {
             const vec4 mean = nodes(above * NODE_SIZE + NODE_MEAN);
             inherited = xyz_of(mean) + mean.w * inherited;
         }
+        hit.levels += facts.w;
         const vec4 own = looks(step * LOOK_SIZE);
         tint = vec4(xyz_of(tint) + tint.w * xyz_of(own), tint.w * own.w);
         if (facts.z != NONE) {
@@ -325,16 +399,18 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 const int most_crossings = 4;
                 float begin = near;
                 site.kind = kind;
-                vec3 wider = vec3(1.0f);
-                if (frame.faint && kind != KIND_PLANE) {
+                mat3 squeezed = mat3(1.0f);
+                const bool widened = FAINTS && frame.faint && kind != KIND_PLANE;
+                if (widened) {
                     // About its middle, in the frame that it is drawn in.
                     const vec4 ball = nodes(frame.node * NODE_SIZE + NODE_BALL);
-                    const vec3 place = place_of(xyz_of(ball), frame, origin, direction);
-                    const float width = least_half_width(place, frame.scale * ball.w) / frame.scale;
-                    wider = widening(width / nodes(node + NODE_LOOK).w, xyz_of(row0), xyz_of(row1), xyz_of(row2));
+                    const vec3 place = place_of(xyz_of(ball), frame, at, origin, direction);
+                    const float width = least_half_width(place, frame.scale * ball.w);
+                    squeezed = squeezing(to_world(at, xyz_of(row0), xyz_of(row1), xyz_of(row2)),
+                                         width / nodes(node + NODE_LOOK).w);
                     const vec3 centre = xyz_of(nodes(node + NODE_BALL));
-                    inner.origin = centre + (inner.origin - centre) / wider;
-                    inner.direction /= wider;
+                    inner.origin = centre + squeezed * (inner.origin - centre);
+                    inner.direction = squeezed * inner.direction;
                 }
                 for (int crossing = 0; crossing < most_crossings; ++crossing) {
                     met = meet_primitive(kind, nodes(node + NODE_LOOK).z, inner.origin, inner.direction, begin, far, t,
@@ -344,34 +420,42 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     begin = t;
                     met = false;
                 }
-                normal /= wider;
+                if (widened) normal = squeezed * normal;
             } else if (at + 1 < MOST_FRAMES) {
+                if (STRETCHED)
+                    inner.scale = place_space(at, xyz_of(row0), xyz_of(row1), xyz_of(row2), stretch);
                 const vec4 ball = nodes(node + NODE_BALL);
                 const float radius = inner.scale * ball.w;
-                const vec3 place = place_of(xyz_of(ball), inner, origin, direction);
+                const vec3 place = place_of(xyz_of(ball), inner, at + 1, origin, direction);
                 const float detail = 2.0f * radius * detail_per_unit(place, radius);
                 const bool small = hurries || detail <= node_facts.x;
                 inner.cut = ((marks.y & NODE_UNENDING) != 0u && inner.steps == 0u) || (node_facts.x > 0.0f && small);
                 const uint tree = inner.cut ? marks.w : marks.z;
                 if (inner.cut && tree != NONE && (marks.y & NODE_FAINT) != 0u && !inner.faint)
                     inner.faint = detail <= 1.0f;
-                if ((marks.y & NODE_WIDENS) != 0u)
-                    inner.margin = scene.widths.y * least_half_width(place, -2.0f * radius) / inner.scale;
+                if (FAINTS && (marks.y & NODE_WIDENS) != 0u)
+                    inner.margin = scene.widths.y * least_half_width(place, -2.0f * radius) / inner.scale *
+                                   (STRETCHED ? most_extent(spaces[at + 1]) : 1.0f);
                 frames[at + 1] = inner;
                 if (inner.cut && tree == NONE) {
                     const vec4 proxy0 = nodes(node + NODE_PROXY), proxy1 = nodes(node + NODE_PROXY + 1u),
                                proxy2 = nodes(node + NODE_PROXY + 2u);
-                    vec3 wider = vec3(1.0f);
-                    if (inner.faint || (marks.y & NODE_FAINT) != 0u)
-                        wider = widening(least_half_width(place, radius) / inner.scale, xyz_of(proxy0), xyz_of(proxy1),
-                                         xyz_of(proxy2));
-                    const vec3 o = vec3(dot(xyz_of(proxy0), inner.origin) + proxy0.w,
+                    vec3 o = vec3(dot(xyz_of(proxy0), inner.origin) + proxy0.w,
                                         dot(xyz_of(proxy1), inner.origin) + proxy1.w,
                                         dot(xyz_of(proxy2), inner.origin) + proxy2.w);
-                    const vec3 d = vec3(dot(xyz_of(proxy0), inner.direction), dot(xyz_of(proxy1), inner.direction),
-                                        dot(xyz_of(proxy2), inner.direction));
-                    met = meet_sphere(o / wider, d / wider, near, far, t, normal);
-                    if (met) normal = rows_transposed(proxy0, proxy1, proxy2, normal / wider);
+                    vec3 d = vec3(dot(xyz_of(proxy0), inner.direction), dot(xyz_of(proxy1), inner.direction),
+                                  dot(xyz_of(proxy2), inner.direction));
+                    mat3 squeezed = mat3(1.0f);
+                    const bool widened = FAINTS && (inner.faint || (marks.y & NODE_FAINT) != 0u);
+                    if (widened) {
+                        squeezed = squeezing(to_world(at + 1, xyz_of(proxy0), xyz_of(proxy1), xyz_of(proxy2)),
+                                             least_half_width(place, radius));
+                        o = squeezed * o;
+                        d = squeezed * d;
+                    }
+                    met = meet_sphere(o, d, near, far, t, normal);
+                    if (widened) normal = squeezed * normal;
+                    if (met) normal = rows_transposed(proxy0, proxy1, proxy2, normal);
                     is_proxy = true;
                 } else if (tree != NONE) {
                     next = tree;

@@ -18,6 +18,7 @@
 #define LIMIT_LEVELS 6
 #define LIMIT_RATIO 1.5f
 #define FRAMES inline thread_local Frame frames[MOST_FRAMES];
+#define SPACES inline thread_local mat3 spaces[MOST_FRAMES];
 #define STEPS inline thread_local uint steps = 0, lost = 0;
 #define WAITING_PATHS inline thread_local Path waiting_paths[MOST_WAITING];
 
@@ -32,6 +33,7 @@ using kernel_layout::Scene;
 inline constexpr float PI = 3.14159265358979f;
 inline constexpr float FAR = 1e30f;
 inline constexpr int MOST_FRAMES = 64, MOST_LATER = 5 * MOST_FRAMES;
+inline thread_local bool STRETCHED = false, FAINTS = false;
 
 inline thread_local const FlatModel* model = nullptr;
 inline thread_local Scene scene;
@@ -40,6 +42,8 @@ inline thread_local std::vector<vec4> film;
 inline void use(const FlatModel& flat) {
     model = &flat;
     scene = flat.scene;
+    STRETCHED = flat.stretched;
+    FAINTS = flat.scene.widths.z > 0;
 }
 
 inline uint min_uint(uint a, uint b) {

@@ -119,6 +119,26 @@ TEST(GpuKernel, CountsLevels) {
     }
 }
 
+TEST(GpuKernel, MeetsDustAsItIsDrawn) {
+    Graph stretched = test::tetrahedron(0.4);
+    const ObjectId self = stretched.objects[stretched.root].instances[0].master;
+    for (Instance& part : stretched.objects[self].instances)
+        part.parent_from_child = part.parent_from_child * Affine::scale(Vec3(1, 0.8, 0.6));
+    const Graph even = test::tetrahedron(0.4);
+    for (const Graph* const graph : std::initializer_list<const Graph*>{&even, &stretched})
+        for (const bool culled : {true, false}) {
+            DetailOptions options;
+            if (!culled) {
+                options.steps = 4;
+                options.error_px = 0;
+            }
+            const auto model = test::traced(*graph, options);
+            const Comparison seen = compare(*model, 4000, 6);
+            EXPECT_GT(seen.hits, 10);
+            EXPECT_LE(seen.differ, 4);
+        }
+}
+
 TEST(GpuKernel, MeetsAllShapes) {
     DetailOptions options;
     const auto model = test::traced(all_shapes(), options);

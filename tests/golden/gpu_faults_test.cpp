@@ -1,0 +1,82 @@
+// Devices of Vulkan that fail at any time, by tests/bench/vulkan_shim.cpp: the processors draw the picture,
+// and graftal says why. Without a device it says how to go on.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/golden/command_line.h"
+
+namespace graftal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class GpuFaults : public CommandLine {
+  protected:
+    void SetUp() override {
+        CommandLine::SetUp();
+#ifndef GRAFTAL_VULKAN_SHIM
+        GTEST_SKIP() << "sanitizers find faults in drivers";
+#else
+        write("m.rifs", "rifs m {\n map a { scale 1/2 }\n map b { scale 1/2 translate <1,0,0> }\n"
+                        " map c { scale 1/2 translate <0,1,0> }\n}\n");
+        shell("mkdir ../loader && ln -s '" GRAFTAL_VULKAN_SHIM "' ../loader/libvulkan.so.1");
+#endif
+    }
+
+    /// `fault`: FUNCTION:N:RESULT, or "".
+    RunResult draw(const std::string& fault, const std::string& words = "m.rifs --engine gpu") const {
+        return shell("LD_LIBRARY_PATH=$PWD/../loader VULKAN_FAULT=" + fault +
+                     " timeout 100 \"$graftal\" render " + words + " --size 16x12 --samples 2 -o a.png");
+    }
+};
+
+TEST_F(GpuFaults, AreNotesOnAPictureByTheProcessors) {
+    ASSERT_THAT(draw("").err, Not(HasSubstr("not the GPU")));
+    const struct {
+        std::string fault, said;
+    } faults[] = {
+        {"vkCreateDevice:1:-3", "not the GPU: GPU: opening the device failed (Vulkan's result -3)"},
+        {"vkAllocateMemory:1:-2", "the device has no memory left"},
+        {"vkAllocateMemory:5:-2", "the device has no memory left"},
+        {"vkCreateComputePipelines:1:-1", "making the kernel: no memory is left"},
+        {"vkQueueSubmit:2:-4", "running the kernel: the device was lost"},
+        {"vkQueueSubmit:14:-4", "running the kernel: the device was lost"},
+        {"vkWaitForFences:14:-4", "running the kernel: the device was lost"},
+        {"vkWaitForFences:14:2", "the device takes too long for a part of the picture"},
+    };
+    for (const auto& [fault, said] : faults) {
+        shell("rm -f a.png");
+        const RunResult result = draw(fault);
+        EXPECT_EQ(result.status, 0) << fault << result.err;
+        EXPECT_THAT(result.err, HasSubstr(said)) << fault;
+        EXPECT_EQ(picture("a.png").width, 16) << fault;
+    }
+}
+
+TEST_F(GpuFaults, WithoutALoaderOrADeviceTheProcessorsDrawToo) {
+    const RunResult none = draw("vkCreateInstance:1:-9");
+    EXPECT_EQ(none.status, 0);
+    EXPECT_THAT(none.err, HasSubstr("not the GPU: GPU: no driver of Vulkan 1.2 is installed"));
+    EXPECT_EQ(draw("vkCreateInstance:1:-9", "m.rifs --engine auto").status, 0);
+    shell("rm -f ../loader/libvulkan.so.1 && touch ../loader/libvulkan.so.1");
+    const RunResult missing = draw("");
+    EXPECT_EQ(missing.status, 0);
+    EXPECT_THAT(missing.err, HasSubstr("not the GPU: GPU: no Vulkan loader (libvulkan.so.1) is installed"));
+}
+
+TEST_F(GpuFaults, AMillionInstancesAreDrawnOrLeftToTheProcessors) {
+    write("cells.inst",
+          "canonical object cell { cube scale: 0.3 }\nobject many { scatter: cell count: 1000000 "
+          "over: 0, 0, 1000, 1000 by: uniform }\n");
+    const RunResult drawn = draw("", "cells.inst --engine gpu --plain-light");
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    EXPECT_THAT(drawn.err, Not(HasSubstr("not the GPU")));
+    const RunResult left = draw("", "cells.inst --engine gpu --plain-light --memory 200M");
+    EXPECT_EQ(left.status, 0) << left.err;
+    EXPECT_THAT(left.err, HasSubstr("its kernel does not know 1000000 instances within 200 MiB"));
+}
+
+} // namespace
+} // namespace graftal

@@ -99,6 +99,7 @@ std::optional<MetPart> Pointer::part_near(const ViewedModel& viewed, double x, d
 std::vector<GraphStep> Pointer::whole_path(const ViewedModel& viewed,
                                            const std::vector<GraphStep>& path) const {
     if (!viewed.ways || path.empty()) return path;
+    if (path.front().instance >= viewed.ways->size()) return {}; // the ground, which no address leads to
     std::vector<GraphStep> whole = viewed.ways->path(path.front().instance);
     whole.insert(whole.end(), path.begin() + 1, path.end());
     return whole;
@@ -241,8 +242,12 @@ Pointer::Place Pointer::rooted(const ViewedModel& viewed, const std::optional<Me
         };
         while (path.size() > 1 && !is_fit())
             path.pop_back();
-        middle = world_from_end(graph, path)(viewed.model->bounds[end_of(graph, path)].ball.centre);
-        at = address_of(graph, whole_path(viewed, path));
+        const std::vector<GraphStep> whole = whole_path(viewed, path);
+        if (whole.empty() && !viewed.ways) throw BadMessage("the model has no parts to zoom at");
+        if (!whole.empty()) {
+            middle = world_from_end(graph, path)(viewed.model->bounds[end_of(graph, path)].ball.centre);
+            at = address_of(graph, whole);
+        }
     }
     camera.location = scale * (camera.location - middle);
     camera.width *= scale;

@@ -64,6 +64,27 @@ Image thinned(const Image& picture, int block) {
 
 } // namespace
 
+std::vector<ShownTile> tiles_of_picture(const Image& developed, int pass) {
+    std::vector<ShownTile> tiles;
+    for (const Tile& window : windows_of({developed.width, developed.height}, wide_window_px)) {
+        ShownTile tile{window, 1, pass, {}};
+        for (int y = window.y; y < window.y + window.height; ++y)
+            for (int x = window.x; x < window.x + window.width; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    const auto pixel =
+                        static_cast<std::size_t>(y) * static_cast<std::size_t>(developed.width) +
+                        static_cast<std::size_t>(x);
+                    // Of a grey picture the one channel counts for all.
+                    const int channel = developed.channels < 3 ? 0 : c;
+                    const std::size_t sample = static_cast<std::size_t>(developed.channels) * pixel +
+                                               static_cast<std::size_t>(channel);
+                    tile.rgb8 += static_cast<char>(level8_of(developed.pixels[sample]));
+                }
+        tiles.push_back(std::move(tile));
+    }
+    return tiles;
+}
+
 ProgressivePicture::ProgressivePicture(PreparedView prepared, const PictureWishes& wishes,
                                        std::function<const Workers&()> workers,
                                        std::shared_ptr<TraceGround> ground, double seconds_a_sample)

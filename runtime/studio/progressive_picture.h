@@ -31,6 +31,9 @@ struct ShownPass {
     bool done = false;
 };
 
+/// The tiles of a whole picture that is developed already.
+std::vector<ShownTile> tiles_of_picture(const Image& developed, int pass);
+
 struct PictureListener {
     std::function<void(ShownTile)> on_tile;
     std::function<void(const ShownPass&)> on_pass;
@@ -57,6 +60,8 @@ class ProgressivePicture {
     /// Of the clock, for a sample of the rough passes; 0 before them.
     double rough_seconds_a_sample() const { return rough_seconds_a_sample_; }
     bool done() const { return phase_ == Phase::done; }
+    /// Only the passes are left that no clock decides on.
+    bool is_rough() const { return phase_ == Phase::begin || phase_ == Phase::rough; }
     /// Passes that are complete.
     int passes() const { return pass_; }
     const std::shared_ptr<TraceGround>& ground() const { return ground_; }

@@ -8,6 +8,7 @@
 #include "compiler/session/session.h"
 #include "compiler/support/files.h"
 #include "compiler/support/workers.h"
+#include "runtime/image/image.h"
 #include "runtime/trace/model/trace_model.h"
 
 namespace graftal {
@@ -70,7 +71,15 @@ class StudioHome {
     virtual void make_file(FileJob, CancelFlag, OnShare, OnResult on_result) {
         on_result({"this home writes no files", {}, {}, {}});
     }
-    /// Ends what make_file() has begun: none of its functions is called after it.
+    using OnPicture = std::function<void(const Image& developed)>;
+    using OnEnd = std::function<void(std::string error)>;
+    /// Has another engine than the native one draw the job's picture, beside the session's work: coarse
+    /// first, where the engine does so. Calls the functions by any thread; the last once, with "" where all
+    /// is well.
+    virtual void draw_picture(FileJob, CancelFlag, OnPicture, OnEnd on_end) {
+        on_end("this home has no such engine");
+    }
+    /// Waits for the end of what these two have begun: none of their functions is called after it.
     virtual void end_jobs() {}
 };
 

@@ -1,6 +1,8 @@
 #include "runtime/studio/studio_session.h"
 
+#include <algorithm>
 #include <exception>
+#include <new>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include "runtime/studio/file_asks.h"
 #include "runtime/studio/message_reader.h"
 #include "runtime/studio/model_message.h"
+#include "runtime/studio/text_asks.h"
 
 namespace graftal {
 
@@ -106,6 +109,7 @@ bool StudioSession::work(double budget_seconds) {
         try {
             take_state();
             tell_of_file();
+            tell_of_engine();
             if (answer_next()) continue;
             const auto cut_short = [&] { return clock_seconds() > end + (patience_ - 1) * budget_seconds; };
             if (stage_ == Stage::compile)
@@ -118,7 +122,8 @@ bool StudioSession::work(double budget_seconds) {
                 return false;
         } catch (const std::bad_alloc&) {
             fail("graftal has too little memory for this model: make it, or its picture, smaller");
-        } catch (const std::exception& fault) {
+        } catch (const std::exception& fault) { // a broken invariant
+            thumbnails_.clear();
             fail(fault.what());
         }
     } while (!stopped_ && clock_seconds() < end);
@@ -187,6 +192,11 @@ void StudioSession::compile() {
     const bool is_drawn = prepare(model_, state_, prepared, compilation_);
     if (outdated()) return;
     send(findings_message(state_.number, compilation_));
+    const std::vector<std::string> engines = home_.engines();
+    if (std::ranges::find(engines, state_.engine) == engines.end()) {
+        send(fault_message(fmt::format("there is no engine '{}' here", state_.engine)));
+        state_.engine = "native";
+    }
     described_ = false;
     stage_ = is_drawn ? Stage::picture : Stage::nothing;
     if (!is_drawn) return;
@@ -205,6 +215,14 @@ bool StudioSession::draws_first() const {
 }
 
 void StudioSession::draw_thumbnail(const std::function<bool()>& cut_short) {
+    try {
+        step_thumbnail(cut_short);
+    } catch (const std::bad_alloc&) {
+        end_thumbnail("graftal has too little memory for this picture");
+    }
+}
+
+void StudioSession::step_thumbnail(const std::function<bool()>& cut_short) {
     Thumbnail& thumbnail = thumbnails_.front();
     if (!thumbnail.picture) {
         Compilation compilation;
@@ -249,13 +267,56 @@ void StudioSession::describe() {
     send(model_message(state_, *lowered, *analysed, *picture_->prepared().viewed, compilation.sources));
 }
 
-void StudioSession::draw(const std::function<bool()>& cut_short) {
-    PictureListener listener;
-    listener.on_tile = [this](const ShownTile& shown) {
-        if (outdated()) return;
-        sink_.binary(tile_message(
-            {state_.number, static_cast<std::uint32_t>(shown.pass), shown.tile, shown.block}, shown.rgb8));
+void StudioSession::send_tile(const ShownTile& tile) {
+    if (outdated()) return;
+    sink_.binary(tile_message({state_.number, static_cast<std::uint32_t>(tile.pass), tile.tile, tile.block},
+                              tile.rgb8));
+}
+
+/// Has another engine draw the state's picture.
+void StudioSession::start_engine() {
+    stage_ = Stage::nothing;
+    engine_pass_ = picture_->passes();
+    const std::uint32_t number = state_.number;
+    const auto note = [this, number](std::optional<Image> picture, std::string error) {
+        const std::lock_guard lock(inbox_);
+        arrived_.push_back({number, std::move(picture), std::move(error)});
+        if (wake_) wake_();
     };
+    home_.draw_picture(
+        {command_words(state_, "render"), {state_.name, *state_.text}, {}, ".png"},
+        CancelFlag([this, number] { return stopped_ || newest_ != number; }),
+        [note](const Image& developed) { note(developed, {}); },
+        [note](std::string error) { note(std::nullopt, std::move(error)); });
+}
+
+void StudioSession::tell_of_engine() {
+    std::deque<Arrived> arrived;
+    {
+        const std::lock_guard lock(inbox_);
+        arrived = std::exchange(arrived_, {});
+    }
+    for (const Arrived& news : arrived) {
+        if (news.number != state_.number || outdated()) continue;
+        if (!news.error.empty()) send(fault_message(fmt::format("{}: {}", state_.engine, news.error)));
+        if (news.picture)
+            for (const ShownTile& tile : tiles_of_picture(*news.picture, engine_pass_))
+                send_tile(tile);
+        send({{"type", "pass"},
+              {"number", state_.number},
+              {"pass", news.picture ? engine_pass_++ : std::max(engine_pass_ - 1, 0)},
+              {"samples", nullptr},
+              {"seconds_left", nullptr},
+              {"noise_255", nullptr},
+              {"error_px", nullptr},
+              {"done", !news.picture}});
+    }
+}
+
+void StudioSession::draw(const std::function<bool()>& cut_short) {
+    if (state_.engine != "native" && !picture_->is_rough()) return start_engine();
+    PictureListener listener;
+    listener.on_tile = [this](const ShownTile& shown) { send_tile(shown); };
     listener.on_pass = [this](const ShownPass& shown) {
         if (outdated()) return;
         send({{"type", "pass"},
@@ -267,7 +328,6 @@ void StudioSession::draw(const std::function<bool()>& cut_short) {
               {"error_px", shown.error_px},
               {"done", shown.done}});
     };
-    bool was_cut = false;
     const auto cancelled = [&] {
         if (outdated() || waiting_) return true;
         return cut_short();
@@ -276,7 +336,7 @@ void StudioSession::draw(const std::function<bool()>& cut_short) {
     if (!picture_->step(
             cancelled, [this] { return outdated(); }, listener))
         stage_ = Stage::nothing;
-    was_cut = !outdated() && !waiting_ && cut_short();
+    const bool was_cut = !outdated() && !waiting_ && cut_short();
     patience_ = was_cut ? 2 * patience_ : 1;
     ground_ = picture_->ground();
     seconds_a_sample_ = picture_->rough_seconds_a_sample();
@@ -305,7 +365,9 @@ bool StudioSession::answer_next() {
             return true;
         }
         message.update(answer(ask));
-    } catch (const BadMessage& fault) {
+    } catch (const std::bad_alloc&) {
+        message["error"] = "graftal has too little memory for an answer";
+    } catch (const std::exception& fault) { // BadMessage, or a broken invariant
         message["error"] = fault.what();
     }
     send(message);
@@ -369,12 +431,9 @@ void StudioSession::tell_of_file() {
 }
 
 nlohmann::json StudioSession::answer(const Ask& ask) {
-    // The asks about text come from compiler/editing: their place is here.
-    for (const char* const what :
-         {"complete", "hover", "definition", "rename", "format", "map", "pull", "digraph", "vary"})
-        if (ask.what == what) throw BadMessage(fmt::format("'{}': not yet", ask.what));
     if (!state_.text) throw BadMessage("no state was sent");
     const MessageReader fields(ask.message);
+    if (is_about_text(ask.what)) return answer_about_text(ask.what, ask.message, state_);
     pointer_.look_at(state_);
     if (ask.what == "pick") return pointer_.pick(fields.needed_number("x"), fields.needed_number("y"));
     if (ask.what == "zoom") {

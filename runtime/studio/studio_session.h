@@ -82,6 +82,13 @@ class StudioSession {
         std::vector<ShownTile> tiles; ///< of the pass under way
     };
 
+    /// News of an engine that draws beside the session: a picture, or its end.
+    struct Arrived {
+        std::uint32_t number = 0; ///< of the state
+        std::optional<Image> picture;
+        std::string error;
+    };
+
     // For hear().
     void note(const nlohmann::json& message);
 
@@ -91,8 +98,12 @@ class StudioSession {
     Thumbnail thumbnail_of(const Ask& ask) const;
     void start_file(const Ask& ask);
     void tell_of_file();
+    void start_engine();
+    void tell_of_engine();
+    void send_tile(const ShownTile& tile);
     bool draws_first() const;
     void draw_thumbnail(const std::function<bool()>& cut_short);
+    void step_thumbnail(const std::function<bool()>& cut_short);
     void end_thumbnail(const std::string& error);
     bool prepare(ModelSession& model, StudioState& state, PreparedView& prepared, Compilation& compilation);
     void compile();
@@ -113,6 +124,7 @@ class StudioSession {
     std::deque<Ask> asks_;
     std::deque<std::string> faults_;
     std::optional<Writing> writing_;
+    std::deque<Arrived> arrived_;
     std::atomic<std::uint32_t> newest_ = 0;
     std::atomic<bool> stale_ = false;   ///< a newer state was heard
     std::atomic<bool> waiting_ = false; ///< asks or faults were heard
@@ -129,6 +141,7 @@ class StudioSession {
     std::shared_ptr<TraceGround> ground_; ///< of the last picture
     std::shared_ptr<const PreparedCut> ground_of_;
     bool described_ = false;      ///< the state's model was told
+    int engine_pass_ = 0;         ///< of the engine that draws beside this
     double seconds_a_sample_ = 0; ///< of the last picture of this text
     double patience_ = 1;         ///< budgets that the next piece may take
 };

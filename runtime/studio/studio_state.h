@@ -23,7 +23,7 @@ struct StudioState {
 };
 
 /// Pixels that a picture of the page may have, and along a side.
-inline constexpr std::int64_t most_page_pixels = std::int64_t{1} << 24;
+inline constexpr std::int64_t most_page_pixels = std::int64_t{1} << 23;
 inline constexpr int most_page_side = 16384;
 
 /// Reads the fields `camera`, `at` and `zoom`. Throw BadMessage.

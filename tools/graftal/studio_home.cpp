@@ -8,6 +8,8 @@
 #include "compiler/import/importers.h"
 #include "compiler/support/text_encoding.h"
 #include "runtime/export/export_model.h"
+#include "runtime/image_files/image_files.h"
+#include "runtime/render/file_film.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/system/disk_files.h"
 #include "runtime/system/file.h"
@@ -87,7 +89,7 @@ namespace {
 
 /// Whether files may go there: below the folder where the program was started.
 bool may_write(const std::string& path) {
-    return !std::filesystem::path(path).is_absolute() && lies_in(path, ".");
+    return lies_in(path, ".");
 }
 
 bool is_model_ending(std::string_view ending) {
@@ -158,7 +160,7 @@ FileResult made_file(const FileJob& job, const std::string& root, const CancelFl
 } // namespace
 
 void ProgramHome::make_file(FileJob job, CancelFlag cancel, OnShare on_share, OnResult on_result) {
-    end_jobs();
+    if (file_maker_.joinable()) file_maker_.join();
     file_maker_ =
         std::thread([job = std::move(job), cancel = std::move(cancel), on_share = std::move(on_share),
                      on_result = std::move(on_result), model = model_] {
@@ -176,7 +178,84 @@ void ProgramHome::make_file(FileJob job, CancelFlag cancel, OnShare on_share, On
 
 /// The session's flag ends a job that is still running.
 void ProgramHome::end_jobs() {
-    if (file_maker_.joinable()) file_maker_.join();
+    for (std::thread* const thread : {&file_maker_, &drawer_})
+        if (thread->joinable()) thread->join();
+}
+
+std::vector<std::string> ProgramHome::engines() const {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> available;
+        for (const Engine& engine : graftal::engines())
+            if (engine.available().ok()) available.emplace_back(engine.name);
+        return available;
+    }();
+    return names;
+}
+
+namespace {
+
+/// Hands each pass on.
+class HandingFilm final : public DevelopedFilm {
+  public:
+    HandingFilm(const RenderOptions& options, const StudioHome::OnPicture& on_picture)
+        : DevelopedFilm(options), on_picture_(on_picture) {}
+
+  private:
+    Status take(const Image& developed, const AovPicture*) override {
+        on_picture_(developed);
+        return {};
+    }
+
+    const StudioHome::OnPicture& on_picture_;
+};
+
+/// Draws the job's picture. The error, or "".
+std::string draw(const FileJob& job, const std::string& root, const CancelFlag& cancel,
+                 const StudioHome::OnPicture& on_picture) {
+    TemporaryDirectory temporary;
+    if (const Status status = temporary.create(); !status.ok()) return status.message();
+    const std::string output = temporary.path() + "/picture.png";
+    std::vector<std::string> words = job.words;
+    words.insert(words.end(), {"-o", output});
+    ParsedCommandLine parsed = parse_command_line(std::move(words));
+    if (!parsed.options) return "graftal refuses these options, and says why where it was started";
+    Options& options = *parsed.options;
+    options.render.compile.lower.root = root;
+    options.render.progressive = options.engine->progressive;
+    HandingFilm film(options.render, on_picture);
+    if (options.engine->progressive) options.render.film = &film;
+    MemoryFiles files(&disk_files());
+    files.set(job.model.name, job.model.text);
+    CommandSession session(options, options.operands.front(), Keep::nothing, files);
+    session.set_control({cancel, {}});
+    Compilation compilation;
+    const bool is_drawn = options.engine->compile(session, options.render.compile, compilation) &&
+                          options.engine->draw(session, options.render, compilation);
+    if (cancel.raised()) return {};
+    if (!is_drawn) return first_error(compilation);
+    if (options.render.film) return {};
+    Image image;
+    if (const Status status = read_image(output, image); !status.ok()) return status.message();
+    on_picture(image);
+    return {};
+}
+
+} // namespace
+
+void ProgramHome::draw_picture(FileJob job, CancelFlag cancel, OnPicture on_picture, OnEnd on_end) {
+    if (drawer_.joinable()) drawer_.join(); // it was for a state before this one
+    drawer_ = std::thread([job = std::move(job), cancel = std::move(cancel),
+                           on_picture = std::move(on_picture), on_end = std::move(on_end), model = model_] {
+        std::string error;
+        try {
+            error = draw(job, model->root, cancel, on_picture);
+        } catch (const std::bad_alloc&) {
+            error = "graftal has too little memory for this picture";
+        } catch (const std::exception& fault) {
+            error = fault.what();
+        }
+        on_end(std::move(error));
+    });
 }
 
 } // namespace graftal

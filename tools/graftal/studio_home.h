@@ -28,6 +28,7 @@ class ProgramHome final : public StudioHome {
     std::string name() const override { return "program"; }
     std::string version() const override;
     OpenedModel opened() const override { return model_->opened; }
+    std::vector<std::string> engines() const override;
     std::vector<std::string> formats() const override;
     const Files& files() const override;
     std::string root() const override { return model_->root; }
@@ -35,13 +36,14 @@ class ProgramHome final : public StudioHome {
     void equip(Session& session) override;
     Status load_textures(const Graph& graph, const View& view, ModelTextures& textures) override;
     void make_file(FileJob job, CancelFlag cancel, OnShare on_share, OnResult on_result) override;
+    void draw_picture(FileJob job, CancelFlag cancel, OnPicture on_picture, OnEnd on_end) override;
     void end_jobs() override;
 
   private:
     std::shared_ptr<const StudioModel> model_;
     WorkerThreads workers_{0};
     TextureStore textures_;
-    std::thread file_maker_;
+    std::thread file_maker_, drawer_;
 };
 
 } // namespace graftal

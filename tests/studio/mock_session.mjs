@@ -10,13 +10,13 @@ const tile_px = 256;
 const kinds = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css' };
 
 export const example = `# A fern, as Barnsley draws it.
+let lean = 2.5
+let curl = 0.85
 rifs fern {
-  let lean = 2.5
-  let curl = 0.85
   map stem  { scale <0.02, 0.16> }
-  map frond { scale curl  rotate lean  translate <0, 1.6> }
-  map left  { scale 0.3  rotate 49  translate <0, 1.6>  tint rgb <0.2, 0.6, 0.1> 0.5 }
-  map right { scale 0.3  rotate -49  translate <0, 0.7> }
+  map frond { scale curl  rotate z, lean  translate <0, 1.6> }
+  map left  { scale 0.3  rotate z, 49  translate <0, 1.6>  tint rgb <0.2, 0.6, 0.1> 0.5 }
+  map right { scale 0.3  rotate z, -49  translate <0, 0.7> }
   terminal sphere
 }
 `;
@@ -191,7 +191,7 @@ function maps_of(state) {
       matrix = row[1].split(',').map(Number);
     } else {
       const scale = (/scale (<[^>]*>|\S+)/.exec(body)?.[1] ?? '1').replace(/[<>]/g, '').split(',').map((w) => number(w.trim()));
-      const angle = (number(/rotate (\S+)/.exec(body)?.[1] ?? '0') * Math.PI) / 180, [sx, sy = scale[0]] = scale;
+      const angle = (number(/rotate z, (\S+)/.exec(body)?.[1] ?? '0') * Math.PI) / 180, [sx, sy = scale[0]] = scale;
       const [x = 0, y = 0, z = 0] = (/translate <([^>]*)>/.exec(body)?.[1] ?? '0,0').split(',').map((w) => number(w.trim()));
       matrix = [sx * Math.cos(angle), -sy * Math.sin(angle), 0, x, sx * Math.sin(angle), sy * Math.cos(angle), 0, y, 0, 0, sx, z];
     }
@@ -221,8 +221,7 @@ function model_of(state) {
 function plot({ maps, camera }, { width, height, zoom, seed, time }) {
   const picture = Buffer.alloc(3 * width * height);
   for (let y = 0; y < height; ++y) {
-    const shade = 244 - (22 * y) / height;
-    for (let x = 0; x < width; ++x) picture.fill(Math.round(shade), 3 * (y * width + x), 3 * (y * width + x) + 3);
+    picture.fill(Math.round(244 - (22 * y) / height), 3 * y * width, 3 * (y + 1) * width);
   }
   const minus = (a, b) => a.map((v, i) => v - b[i]), dot = (a, b) => a.reduce((s, v, i) => s + v * b[i], 0);
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -231,7 +230,7 @@ function plot({ maps, camera }, { width, height, zoom, seed, time }) {
   const focal = (Number(zoom ?? 1) * width) / (2 * Math.tan((camera.angle_deg * Math.PI) / 360));
   let random = 12345 + (seed ?? 1) * 7919, p = [0, 0, 0];
   const weights = maps.map(({ matrix: m }) => Math.max(0.01, Math.abs(m[0] * m[5] - m[1] * m[4]))), total = weights.reduce((a, b) => a + b, 0);
-  for (let i = 0; i < 60000 && maps.length; ++i) {
+  for (let i = 0; i < 20000 && maps.length; ++i) {
     random = (Math.imul(random, 1664525) + 1013904223) >>> 0;
     let share = (random / 2 ** 32) * total, which = 0;
     while (which < maps.length - 1 && share > weights[which]) share -= weights[which++];

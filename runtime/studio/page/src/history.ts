@@ -9,14 +9,15 @@ interface Kept {
 }
 
 /**
- * Entries are never changed, and share what did not change. A change with the key of the one before, soon after it,
- * takes its place: a drag or a typed word is one step.
+ * Entries are never changed, and share what did not change. A change with the key of the one before, soon after it or by the
+ * same press of the pointer, takes its place: a drag or a typed word is one step.
  */
 export class History {
   private entries: Choices[];
   private at = 0;
   private key: string | null = null;
   private changed_ms = 0;
+  private held = false;
 
   constructor(first: Choices, private readonly storage_key: string, private readonly changed: (why: string) => void) {
     this.entries = [first];
@@ -38,7 +39,8 @@ export class History {
   change(part: Partial<Choices>, key: string | null = null, why = ''): void {
     const next = { ...this.now, ...part };
     const now_ms = performance.now();
-    const merges = key !== null && key === this.key && now_ms - this.changed_ms < merge_ms && !this.can_redo && this.at > 0;
+    const soon = this.held || now_ms - this.changed_ms < merge_ms;
+    const merges = key !== null && key === this.key && soon && !this.can_redo && this.at > 0;
     this.entries.length = this.at + 1;
     if (merges) this.entries[this.at] = next;
     else this.entries.push(next);
@@ -54,9 +56,16 @@ export class History {
     this.changed(why);
   }
 
-  /** The next change begins a step of its own. */
-  end_step(): void {
+  /** The pointer goes down: what it changes until it goes up is one step, however long it takes. */
+  hold(): void {
     this.key = null;
+    this.held = true;
+  }
+
+  /** The pointer goes up. Answers that the session still owes belong to its step. */
+  release(): void {
+    this.held = false;
+    this.changed_ms = performance.now();
   }
 
   undo(): void {

@@ -70,9 +70,8 @@ export class Knobs {
     const { name } = parameter, [least, most] = range_of(parameter), { history } = this.studio;
     const slider = new Slider({
       label: name, value: parameter.value, least, most, whole: is_whole(parameter, history.now.text) ? 'coarse' : null,
-      change: (value, done) => {
+      change: (value) => {
         this.studio.change({ set: { ...history.now.set, [name]: value } }, `set ${name}`);
-        if (done) history.end_step();
       },
     });
     const reset = this.small('↺', `Reset ${name}`, () => {
@@ -95,9 +94,8 @@ export class Knobs {
   private choice_row(key: 'steps' | 'seed', label: string): HTMLElement {
     const slider = new Slider({
       label, value: 0, least: 0, most: 1, whole: 'always',
-      change: (value, done) => {
+      change: (value) => {
         this.studio.change({ [key]: Math.max(0, value) }, `set ${key}`);
-        if (done) this.studio.history.end_step();
       },
     });
     const reset = this.small('↺', `Reset ${label.toLowerCase()}`, () => this.studio.change({ [key]: null }));

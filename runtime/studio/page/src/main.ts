@@ -13,7 +13,7 @@ import { Picture } from './picture';
 import { Place } from './place';
 import { PointTool } from './point';
 import { Presets } from './presets';
-import { Session, type Listener, type Size } from './session';
+import { first_id, Session, type Listener, type Size } from './session';
 import { Status } from './status';
 import { edited, type Studio } from './studio';
 import { Tabs } from './tabs';
@@ -23,7 +23,6 @@ import { Vary } from './vary';
 import { ViewControl } from './view';
 import type { Camera, Choices, Edit, Findings, Hello, Model, Pass, Progress, SentFile, Tile } from './protocol';
 
-const first_id = 2 ** 30;
 const most_px = 2_100_000;
 
 const nothing: Choices = {
@@ -127,6 +126,8 @@ class Page implements Studio, Listener {
     by_id('help').onclick = () => help.showModal();
     by_id<HTMLSelectElement>('quality').onchange = (event) => this.change({ quality: (event.target as HTMLSelectElement).value });
     by_id<HTMLSelectElement>('engine').onchange = (event) => this.change({ engine: (event.target as HTMLSelectElement).value });
+    document.addEventListener('pointerdown', () => history.hold(), true);
+    for (const name of ['pointerup', 'pointercancel']) document.addEventListener(name, () => history.release(), true);
     // Before the editor, which has no history of its own.
     document.addEventListener('keydown', (event) => this.key(event), true);
     new ResizeObserver(() => this.resized()).observe(by_id('view'));
@@ -263,7 +264,8 @@ class Page implements Studio, Listener {
   }
 
   progress(message: Progress): void {
-    if (message.number === this.session.number) this.status.progress(message);
+    if (message.number >= first_id) this.say(`Working on the file: ${Math.round(100 * (message.share ?? 0))} %`);
+    else if (message.number === this.session.number) this.status.progress(message);
   }
 
   pass(message: Pass): void {

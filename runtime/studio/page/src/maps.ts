@@ -172,7 +172,7 @@ export class Maps {
 
   private begin(event: PointerEvent, map: ModelMap, flat: number | null): Drag | null {
     const handle = (event.target as Element).getAttribute('data-handle');
-    const { camera, size, history } = this.studio;
+    const { camera, size } = this.studio;
     if (!camera || !handle || event.button !== 0) return null;
     if (this.chosen !== map.name) {
       this.chosen = map.name;
@@ -183,7 +183,6 @@ export class Maps {
       this.draw();
       return null;
     }
-    history.end_step();
     this.dragging = true;
     const { width_px, height_px } = size, scale = this.px_scale(), start = this.matrix_of(map);
     const normal = flat === null ? view_of(camera).into : unit([Number(flat === 0), Number(flat === 1), Number(flat === 2)]);
@@ -235,7 +234,6 @@ export class Maps {
           this.studio.select(map.from, map.to);
           this.pick(up);
         }
-        history.end_step();
         this.let_go();
         this.draw();
       },

@@ -88,7 +88,6 @@ export class PointTool {
     draggable(marker, () => {
       const { picked, studio } = this, { camera, size } = studio;
       if (!picked || !camera || !studio.model?.maps.length) return null;
-      studio.history.end_step();
       this.lies = picked.point;
       const scale = size.width_px / this.overlay.getBoundingClientRect().width;
       return {
@@ -97,8 +96,7 @@ export class PointTool {
           this.draw();
           this.ask({ address: picked.address, to: picked.point });
         },
-        end: () => studio.history.end_step(),
-      };
+              };
     });
     return marker;
   }

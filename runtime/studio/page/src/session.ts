@@ -27,7 +27,7 @@ export interface Listener {
 }
 
 /** Ids of asks begin above all numbers of states: tiles of thumbnails carry the one, tiles of the picture the other. */
-const first_id = 2 ** 30;
+export const first_id = 2 ** 30;
 const least_wait_ms = 150, most_wait_ms = 2000;
 /** A picture this good, or begun so long ago, may be left for the next one: a drag shows as fine pictures as it has time for. */
 const good_samples = 1 / 16, patience_ms = 40;

@@ -8,8 +8,7 @@ export interface SliderOptions {
   most: number;
   /** Whole numbers: only such, or also others where the hand moves finely. */
   whole?: 'always' | 'coarse' | null;
-  /** `done`: the drag, or the typed number, is complete. */
-  change(value: number, done: boolean): void;
+  change(value: number): void;
 }
 
 export class Slider {
@@ -24,7 +23,7 @@ export class Slider {
     this.range.addEventListener('pointerdown', (event) => this.drag(event));
     this.range.addEventListener('keydown', (event) => this.key(event));
     // Assistive technology sets values without a pointer or key.
-    this.range.addEventListener('input', () => this.put(Number(this.range.value), false));
+    this.range.addEventListener('input', () => this.put(Number(this.range.value)));
     this.number.addEventListener('dblclick', () => this.type());
     this.number.addEventListener('click', (event) => event.detail === 0 && this.type());
     this.show(options.value, options.least, options.most);
@@ -48,14 +47,14 @@ export class Slider {
     this.range.style.setProperty('--share', String((value - this.options.least) / (this.options.most - this.options.least || 1)));
   }
 
-  private put(value: number, done: boolean, fine = false): void {
+  private put(value: number, fine = false): void {
     const { least, most, whole, change } = this.options;
     this.exact = Math.max(least, Math.min(most, value));
     const rounded = whole === 'always' || (whole && !fine) ? Math.round(this.exact) : Number(this.exact.toPrecision(6));
     const exact = this.exact;
     this.show(rounded, least, most);
     this.exact = exact;
-    change(rounded, done);
+    change(rounded);
   }
 
   private drag(down: PointerEvent): void {
@@ -65,18 +64,16 @@ export class Slider {
     range.focus();
     range.setPointerCapture(down.pointerId);
     const span = () => this.options.most - this.options.least;
-    if (!down.shiftKey) this.put(this.options.least + ((down.clientX - box.left - 8) / (box.width - 16)) * span(), false);
-    let last = down, fine = down.shiftKey;
+    if (!down.shiftKey) this.put(this.options.least + ((down.clientX - box.left - 8) / (box.width - 16)) * span());
+    let last = down;
     const move = (event: PointerEvent) => {
       const by = ((event.clientX - last.clientX) / (box.width - 16)) * span();
       last = event;
-      fine = event.shiftKey;
-      this.put(this.exact + (fine ? by / 20 : by), false, fine);
+      this.put(this.exact + (event.shiftKey ? by / 20 : by), event.shiftKey);
     };
     const up = () => {
       range.removeEventListener('pointermove', move);
       range.removeEventListener('lostpointercapture', up);
-      this.put(this.exact, true, fine);
     };
     range.addEventListener('pointermove', move);
     range.addEventListener('lostpointercapture', up);
@@ -93,13 +90,13 @@ export class Slider {
       const fine = event.shiftKey && this.options.whole !== 'always';
       value = Number((this.exact + steps * (fine ? 0.1 : 1) * this.step).toFixed(12));
       event.preventDefault();
-      return this.put(value, false, fine);
+      return this.put(value, fine);
     } else if (event.key === 'Home') value = least;
     else if (event.key === 'End') value = most;
     else if (event.key === 'Enter') return this.type();
     else return;
     event.preventDefault();
-    this.put(value, false);
+    this.put(value);
   }
 
   private type(): void {
@@ -116,7 +113,7 @@ export class Slider {
       if (!keep || input.value.trim() === '' || !Number.isFinite(value)) return;
       this.options.least = Math.min(this.options.least, value);
       this.options.most = Math.max(this.options.most, value);
-      this.put(value, true, true);
+      this.put(value, true);
     };
     input.addEventListener('keydown', (event) => {
       if (event.key === 'Enter') close(true);

@@ -19,10 +19,9 @@ export class Time {
     this.key = element('select', { id: 'time-key' }, element('option', { value: 'time' }, 'time'), element('option', { value: 'steps' }, 'steps'));
     this.slider = new Slider({
       label: 'Time', value: 0, least: 0, most: 10,
-      change: (value, done) => {
+      change: (value) => {
         this.stop();
         this.put(value);
-        if (done) studio.history.end_step();
       },
     });
     this.play_button = element('button', { type: 'button', class: 'quiet', id: 'play', onclick: () => (this.playing ? this.stop() : this.play()) }, 'Play');
@@ -52,7 +51,6 @@ export class Time {
     cancelAnimationFrame(this.playing);
     this.playing = 0;
     this.play_button.textContent = 'Play';
-    this.studio.history.end_step();
   }
 
   private get range(): [number, number] {

@@ -96,7 +96,6 @@ export class Vary {
         type: 'button', class: child.says === 'this model' ? 'centre' : '',
         onclick: () => {
           const { says: _, ...part } = child;
-          studio.history.end_step();
           if (Object.keys(part).length) studio.change(part.set ? { ...part, set: { ...now.set, ...part.set } } : part);
         },
       }, canvas, element('span', {}, child.says));

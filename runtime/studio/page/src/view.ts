@@ -1,8 +1,12 @@
 // The person's hands on the picture: orbit, pan and dolly by mouse, touch and keys; the wheel zooms without an end.
 import { dollied, orbited, panned } from './camera';
-import { latest, type Studio } from './studio';
+import type { Studio } from './studio';
 import type { Camera } from './protocol';
 
+/** A notch of a wheel enlarges so much. */
+const notch_px = 120, notch_factor = 1.3;
+/** Asks may enlarge so much at once. */
+const most_factor = 64, most_waiting = 12;
 const turn_rad_of_px = 0.008, key_turn_rad = 0.1, key_pan_px = 40;
 
 /** An enlargement that the picture shows already, before the session has drawn it. */
@@ -18,18 +22,19 @@ export class ViewControl {
   private ahead: Ahead[] = [];
   private readonly pointers = new Map<number, { x: number; y: number }>();
   private moved_px = 0;
-  private wanted = { factor: 1, x: 0, y: 0 };
-  private readonly ask_zoom: (factor: number) => void;
+  /** Enlargements to ask for. Notches stay apart: those back are answered by the very states of those there. */
+  private readonly wanted: { factor: number; x: number; y: number; whole: boolean }[] = [];
+  private asking = false;
 
   constructor(
     private readonly view: HTMLElement, private readonly canvas: HTMLCanvasElement, private readonly studio: Studio,
     private readonly pick: (x_px: number, y_px: number) => void,
   ) {
-    this.ask_zoom = latest(() => this.zoom_now());
     view.addEventListener('wheel', (event) => {
       event.preventDefault();
-      const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
-      this.zoom(Math.exp(-event.deltaY * lines * 0.0015), ...this.at(event));
+      const px = event.deltaY * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 40 : 1), whole = Math.abs(px) >= 100;
+      const notches = whole ? Math.sign(px) * Math.max(1, Math.round(Math.abs(px) / notch_px)) : px / notch_px;
+      if (notches) this.zoom(notch_factor ** -notches, ...this.at(event), whole);
     }, { passive: false });
     view.addEventListener('contextmenu', (event) => event.preventDefault());
     view.addEventListener('pointerdown', (event) => this.down(event));
@@ -45,12 +50,14 @@ export class ViewControl {
   }
 
   /** Enlarges at once what is seen, and asks for the state that shows it; further calls meanwhile add up. */
-  zoom(factor: number, x = this.studio.size.width_px / 2, y = this.studio.size.height_px / 2): void {
+  zoom(factor: number, x = this.studio.size.width_px / 2, y = this.studio.size.height_px / 2, whole = true): void {
     if (!this.studio.model) return;
-    this.wanted = { factor: this.wanted.factor * factor, x, y };
+    const last = this.wanted.at(-1);
+    if (last && (this.wanted.length > most_waiting || !(whole || last.whole))) Object.assign(last, { factor: last.factor * factor, x, y });
+    else this.wanted.push({ factor, x, y, whole });
     this.ahead.push({ factor, x, y, number: null });
     this.show_ahead();
-    this.ask_zoom(factor);
+    void this.ask_zooms();
   }
 
   /** The picture of a state is there: what was shown ahead of it is in it. */
@@ -62,28 +69,41 @@ export class ViewControl {
 
   whole(): void {
     this.forget_ahead();
-    this.studio.history.end_step();
     this.studio.change({ camera: null, at: null, zoom: null });
   }
 
   forget_ahead(): void {
+    this.wanted.length = 0;
     this.ahead = [];
     this.show_ahead();
   }
 
-  private async zoom_now(): Promise<void> {
-    const { factor, x, y } = this.wanted;
-    this.wanted = { factor: 1, x, y };
-    if (factor === 1) return;
-    const mine = this.ahead.filter(({ number }) => number === null);
+  private async ask_zooms(): Promise<void> {
+    if (this.asking) return;
+    this.asking = true;
+    for (let next = this.wanted.shift(); next; next = this.wanted.shift()) {
+      const factor = Math.max(1 / most_factor, Math.min(most_factor, next.factor)), rest = next.factor / factor;
+      if (Math.abs(rest - 1) > 1e-9) this.wanted.unshift({ ...next, factor: rest });
+      await this.zoom_now({ ...next, factor });
+    }
+    this.asking = false;
+  }
+
+  private async zoom_now({ factor, x, y }: { factor: number; x: number; y: number }): Promise<void> {
     try {
       const answer = await this.studio.session.ask('zoom', { x, y, factor });
       const { at = null, zoom = null, camera = null } = answer as { at?: string; zoom?: string; camera?: Camera };
       this.studio.change({ at, zoom, camera }, 'zoom');
-      for (const one of mine) one.number = this.studio.session.number + (this.studio.session.holds ? 1 : 0);
+      // The oldest enlargements that are shown ahead are in this state now.
+      const number = this.studio.session.number + (this.studio.session.holds ? 1 : 0);
+      for (let left = factor, i = 0; i < this.ahead.length && Math.abs(Math.log(left)) > 1e-9; ++i) {
+        const one = this.ahead[i]!;
+        if (one.number !== null) continue;
+        one.number = number;
+        left /= one.factor;
+      }
     } catch (error) {
-      this.ahead = this.ahead.filter((one) => !mine.includes(one));
-      this.show_ahead();
+      this.forget_ahead();
       this.studio.say((error as Error).message);
     }
   }
@@ -110,7 +130,6 @@ export class ViewControl {
     this.view.setPointerCapture(event.pointerId);
     if (this.pointers.size === 0) {
       this.moved_px = 0;
-      this.studio.history.end_step();
     } else {
       this.moved_px = 100;
     }
@@ -149,7 +168,6 @@ export class ViewControl {
   private up(event: PointerEvent): void {
     if (!this.pointers.delete(event.pointerId)) return;
     if (event.type === 'pointerup' && this.moved_px < 4 && event.button === 0) this.pick(...this.at(event));
-    if (this.pointers.size === 0) this.studio.history.end_step();
   }
 
   private key(event: KeyboardEvent): void {

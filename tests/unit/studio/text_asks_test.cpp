@@ -38,7 +38,7 @@ TEST_F(TextAsks, CompleteHoverDefinitionRename) {
     EXPECT_EQ(page.ask("definition", {{"offset", place_of("spread, 0>")}})["from"], place_of("spread"));
     const json renamed = page.ask("rename", {{"offset", place_of("spread")}, {"name", "width_of"}});
     EXPECT_EQ(renamed["edits"].size(), 4u) << renamed;
-    EXPECT_TRUE(page.ask("rename", {{"offset", place_of("spread")}, {"name", "map"}}).contains("error"));
+    EXPECT_TRUE(page.ask("rename", {{"offset", place_of("spread")}, {"name", "1 x"}}).contains("error"));
     EXPECT_TRUE(page.ask("format")["edits"].is_array());
     EXPECT_TRUE(page.ask("hover", {{"offset", 1000000}}).contains("id")) << "beyond the end";
 }

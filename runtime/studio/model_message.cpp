@@ -4,10 +4,11 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/editing/positions.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
 #include "compiler/support/number_range.h"
-#include "runtime/studio/utf16.h"
+#include "runtime/studio/text_asks.h"
 
 namespace graftal {
 
@@ -27,8 +28,9 @@ const char* severity_name(Severity severity) {
 
 void add_place(nlohmann::json& to, const Span& span, const SourceMap& sources) {
     if (!span.known()) return;
-    to["from"] = utf16_offset(sources.text(span.file), span.begin);
-    to["to"] = utf16_offset(sources.text(span.file), span.end);
+    const TextPositions positions(sources.text(span.file));
+    to["from"] = positions.utf16_of(span.begin);
+    to["to"] = positions.utf16_of(span.end);
 }
 
 /// A place in a file that was read: people see no translation.
@@ -71,11 +73,6 @@ nlohmann::json parameter_json(const ModelParameter& parameter, const SourceMap& 
     return json;
 }
 
-nlohmann::json box_json(const Box& box) {
-    if (box.empty()) return nullptr;
-    return {{"least", vector_json(box.min)}, {"most", vector_json(box.max)}};
-}
-
 /// From the eye to the depth of the model's middle, or of the point that a zoom is about.
 double distance_of(const ViewedModel& viewed, bool is_zoomed) {
     const Camera& camera = viewed.view.camera;
@@ -86,6 +83,11 @@ double distance_of(const ViewedModel& viewed, bool is_zoomed) {
 }
 
 } // namespace
+
+nlohmann::json box_json(const Box& box) {
+    if (box.empty()) return nullptr;
+    return {{"least", vector_json(box.min)}, {"most", vector_json(box.max)}};
+}
 
 nlohmann::json vector_json(Vec3 vector) {
     return {vector.x, vector.y, vector.z};
@@ -127,7 +129,7 @@ nlohmann::json model_message(const StudioState& state, const LoweredModel& lower
              camera_json(viewed.view.camera, distance_of(viewed, state.stages.view.zoom.zoom.has_value()))},
             {"box", box_json(box)},
             {"stats", nlohmann::json::parse(stats_json(analysed, levels, sources))},
-            {"maps", nlohmann::json::array()}};
+            {"maps", maps_json(state, analysed)}};
 }
 
 } // namespace graftal

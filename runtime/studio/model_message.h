@@ -22,5 +22,6 @@ nlohmann::json model_message(const StudioState& state, const LoweredModel& lower
 nlohmann::json camera_json(const Camera& camera, double distance);
 
 nlohmann::json vector_json(Vec3 vector);
+nlohmann::json box_json(const Box& box); ///< null for an empty one
 
 } // namespace graftal

@@ -15,7 +15,6 @@ namespace graftal {
 
 namespace {
 
-constexpr std::uint64_t most_looks = 300'000;
 constexpr std::uint32_t no_place = UINT32_MAX;
 
 /// Where a ray goes into a box; nothing where it misses it.
@@ -54,7 +53,7 @@ class PartRay {
         : graph_(model.model->graph), components_(model.model->components), bounds_(model.model->bounds),
           steps_(model.steps), view_(model.view), ray_(ray), least_px_(least_px) {}
 
-    std::optional<MetPart> run() {
+    std::optional<MetPart> run(std::uint64_t most_looks) {
         push({graph_.root, {}, 0, no_place, {}});
         for (std::uint64_t looks = 0; !waiting_.empty() && looks < most_looks; ++looks) {
             const auto [enters, number] = waiting_.top();
@@ -164,8 +163,9 @@ class PartRay {
 
 } // namespace
 
-std::optional<MetPart> first_part(const ViewedModel& model, const Ray& ray, double least_px) {
-    return PartRay(model, ray, least_px).run();
+std::optional<MetPart> first_part(const ViewedModel& model, const Ray& ray, double least_px,
+                                  std::uint64_t most_looks) {
+    return PartRay(model, ray, least_px).run(most_looks);
 }
 
 Affine world_from_end(const Graph& graph, const std::vector<GraphStep>& path) {

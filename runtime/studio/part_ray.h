@@ -18,9 +18,11 @@ struct MetPart {
 };
 
 /// Follows a ray of the view through the graph, nearest parts first, down to primitives and to parts of less
-/// than `least_px` on the picture. Nothing where it meets none, or after too much work. Slow and plain: for
+/// than `least_px` on the picture. Nothing where it meets none, or within `most_looks`
+/// at parts. Slow and plain: for
 /// the pointer, whose question is which part this is.
-std::optional<MetPart> first_part(const ViewedModel& model, const Ray& ray, double least_px);
+std::optional<MetPart> first_part(const ViewedModel& model, const Ray& ray, double least_px,
+                                  std::uint64_t most_looks);
 
 /// The map of the object at the path's end, in the graph's space.
 Affine world_from_end(const Graph& graph, const std::vector<GraphStep>& path);

@@ -8,13 +8,13 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "compiler/editing/positions.h"
 #include "compiler/session/stages.h"
 #include "compiler/support/number_range.h"
 #include "compiler/zoom/focus.h"
 #include "runtime/studio/address_text.h"
 #include "runtime/studio/message_reader.h"
 #include "runtime/studio/model_message.h"
-#include "runtime/studio/utf16.h"
 #include "runtime/trace/camera_rays.h"
 
 namespace graftal {
@@ -25,6 +25,8 @@ namespace {
 constexpr const char* last_named_pass = "drop_unreachable";
 /// Parts smaller than this are not looked into.
 constexpr double least_px = 1;
+/// Parts that a ray of the pointer is asked against.
+constexpr std::uint64_t most_looks = 100'000;
 /// A click this far off is still meant for what is there.
 constexpr double reach_px[] = {2, 4, 7};
 /// The last part of an address is at least this large.
@@ -85,13 +87,13 @@ std::shared_ptr<const ViewedModel> Pointer::needed_view() {
 
 std::optional<MetPart> Pointer::part_near(const ViewedModel& viewed, double x, double y) const {
     const CameraRays rays(viewed.view);
-    std::optional<MetPart> met = first_part(viewed, rays.through(x, y), least_px);
+    std::optional<MetPart> met = first_part(viewed, rays.through(x, y), least_px, most_looks);
     constexpr int around = 8;
     for (const double reach : reach_px)
         for (int i = 0; i < around && !met; ++i) {
             const double angle = glm::radians(360.0 * i / around);
             met = first_part(viewed, rays.through(x + reach * std::cos(angle), y + reach * std::sin(angle)),
-                             least_px);
+                             least_px, most_looks / 16);
         }
     return met;
 }
@@ -126,9 +128,9 @@ nlohmann::json Pointer::pick(double x, double y) {
                           {"object", graph.objects[end_of(graph, path)].name},
                           {"path", std::move(names)}};
     if (span.known() && span.file == FileId{0}) {
-        const std::string_view text = compilation_.sources.text(span.file);
-        answer["from"] = utf16_offset(text, span.begin);
-        answer["to"] = utf16_offset(text, span.end);
+        const TextPositions positions(compilation_.sources.text(span.file));
+        answer["from"] = positions.utf16_of(span.begin);
+        answer["to"] = positions.utf16_of(span.end);
     }
     return answer;
 }

@@ -21,6 +21,7 @@ constexpr double probe_seconds = 0.04;
 /// The rough model, against the one that is asked for: coarser errors, and fewest parts a ray.
 constexpr double rough_error = 8;
 constexpr std::uint64_t rough_visits = 1024;
+constexpr double rough_work_seconds = 0.5;
 /// Blocks from which on a pass is one piece of work.
 constexpr int whole_block = 8;
 /// Pixels along a side of a window: for few workers, and for many.
@@ -120,6 +121,8 @@ void ProgressivePicture::begin(const std::function<bool()>& cancelled) {
             options.error_px *= rough_error;
             if (options.error_world) *options.error_world *= rough_error;
         }
+        // Bounds and shadows take shares of the work, and nothing ends them early.
+        options.work_seconds = std::min(options.work_seconds, rough_work_seconds);
         if (!ground_) ground_ = std::make_shared<TraceGround>(*prepared_.prepared, options.work_seconds);
         rough_ =
             std::make_unique<TraceModel>(prepared_.prepared, view(), options, prepared_.textures, ground_);
@@ -239,7 +242,7 @@ void ProgressivePicture::plan_rough() {
 }
 
 void ProgressivePicture::fit(const std::function<bool()>& for_good) {
-    FittedModel fitted = fit_picture(prepared_, wishes_, plan_, workers_(), for_good, {}, ground_);
+    FittedModel fitted = fit_picture(prepared_, wishes_, plan_, workers_(), for_good);
     if (for_good()) return;
     fitted_ = std::move(fitted);
     rough_.reset();

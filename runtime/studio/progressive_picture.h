@@ -45,7 +45,8 @@ struct PictureListener {
 /// passes are. The last passes depend on no clock.
 class ProgressivePicture {
   public:
-    /// `workers` is asked for at each piece. `ground`: of the same prepared graph, or null.
+    /// `workers` is asked for at each piece. `ground`: of the rough
+    /// model of the same prepared graph, or null.
     /// `seconds_a_sample`: of the rough passes of a picture like this one; 0: nobody knows.
     ProgressivePicture(PreparedView prepared, const PictureWishes& wishes,
                        std::function<const Workers&()> workers, std::shared_ptr<TraceGround> ground = nullptr,

@@ -430,10 +430,26 @@ void StudioSession::tell_of_file() {
     send(message);
 }
 
+nlohmann::json StudioSession::answer_text(const Ask& ask) {
+    Compilation unheard; // its findings were told
+    const bool is_whole = !compilation_.diagnostics.has_errors() && model_.session;
+    const auto lowered = is_whole ? model_.session->lowered(state_.stages, unheard) : nullptr;
+    const auto analysed = lowered ? model_.session->analysed(state_.stages, unheard) : nullptr;
+    StageWork work = stage_work(state_.stages);
+    EditContext context;
+    context.lower = state_.stages.lower;
+    context.help.control = {CancelFlag([this] { return outdated(); }), {}, &work};
+    context.help.translator = home_.translator();
+    context.help.files = &home_.files();
+    return answer_about_text(
+        ask.what, ask.message,
+        {state_, analysed.get(), lowered ? &lowered->notes.parameters : nullptr, context});
+}
+
 nlohmann::json StudioSession::answer(const Ask& ask) {
     if (!state_.text) throw BadMessage("no state was sent");
     const MessageReader fields(ask.message);
-    if (is_about_text(ask.what)) return answer_about_text(ask.what, ask.message, state_);
+    if (is_about_text(ask.what)) return answer_text(ask);
     pointer_.look_at(state_);
     if (ask.what == "pick") return pointer_.pick(fields.needed_number("x"), fields.needed_number("y"));
     if (ask.what == "zoom") {

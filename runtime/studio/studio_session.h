@@ -111,6 +111,7 @@ class StudioSession {
     void draw(const std::function<bool()>& cut_short);
     void fail(const std::string& why);
     nlohmann::json answer(const Ask& ask);
+    nlohmann::json answer_text(const Ask& ask);
     void send(const nlohmann::json& message);
     bool outdated() const { return stale_ || stopped_; }
 

@@ -6,9 +6,190 @@
 
 #include <fmt/format.h>
 
+#include "compiler/editing/complete.h"
+#include "compiler/editing/document.h"
+#include "compiler/editing/format.h"
+#include "compiler/editing/hover.h"
+#include "compiler/editing/maps.h"
+#include "compiler/editing/positions.h"
+#include "compiler/editing/rename.h"
+#include "compiler/editing/vary.h"
 #include "runtime/studio/message_reader.h"
+#include "runtime/studio/model_message.h"
 
 namespace graftal {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// One ask. Its document and positions are those of the state's text.
+class TextAsk {
+  public:
+    TextAsk(const Json& ask, const AskedText& asked)
+        : fields_(ask), ask_(ask), asked_(asked), document_(asked.state.name, *asked.state.text),
+          positions_(document_.text()) {}
+
+    Json answer(const std::string& what) {
+        if (what == "complete") return completions();
+        if (what == "hover") return hovered();
+        if (what == "definition") return defined();
+        if (what == "rename") return renamed();
+        if (what == "format") return {{"edits", edits_json(format(document_))}};
+        if (what == "map")
+            return change_json(move_map(document_, fields_.needed_text("name"), matrix(), asked_.context));
+        if (what == "pull") return pulled();
+        if (what == "digraph") return toggled();
+        return varied();
+    }
+
+  private:
+    std::uint32_t offset() const {
+        return positions_.byte_of(static_cast<std::uint32_t>(fields_.needed_whole("offset", UINT32_MAX)));
+    }
+
+    Json with_place(Json json, const Span& span) const {
+        json["from"] = positions_.utf16_of(span.begin);
+        json["to"] = positions_.utf16_of(span.end);
+        return json;
+    }
+
+    Json edits_json(const std::vector<TextEdit>& edits) const {
+        Json list = Json::array();
+        for (const TextEdit& edit : edits)
+            list.push_back(with_place({{"text", edit.text}}, {0, edit.begin, edit.end}));
+        return list;
+    }
+
+    Json change_json(const MapChange& change) const {
+        if (!change.refusal.empty()) throw BadMessage(change.refusal);
+        return {{"edits", edits_json(change.edits)},
+                {"ratio", change.ratio},
+                {"contracts", change.contracts},
+                {"why", change.why}};
+    }
+
+    Json completions() const {
+        const Completions found = complete(document_, offset());
+        Json items = Json::array();
+        for (const Completion& item : found.items)
+            items.push_back(
+                {{"label", item.label}, {"kind", item.kind}, {"detail", item.detail}, {"text", item.text}});
+        return {{"from", positions_.utf16_of(found.from)}, {"items", std::move(items)}};
+    }
+
+    Json hovered() const {
+        const std::optional<Hover> found = hover(document_, offset(), asked_.model);
+        return found ? with_place({{"text", found->text}}, found->span) : Json::object();
+    }
+
+    Json defined() const {
+        const std::optional<FilePlace> found = definition(document_, offset());
+        if (!found) return Json::object();
+        if (found->file == document_.name()) return with_place({{"file", found->file}}, found->span);
+        return {{"file", found->file}, {"from", 0}, {"to", 0}};
+    }
+
+    Json renamed() const {
+        const Renaming result = rename(document_, offset(), fields_.needed_text("name"));
+        if (!result.refusal.empty()) throw BadMessage(result.refusal);
+        return {{"edits", edits_json(result.edits)}};
+    }
+
+    Affine matrix() const {
+        constexpr std::size_t rows = 3, columns = 4;
+        const auto found = ask_.find("matrix");
+        if (found == ask_.end() || !found->is_array() || found->size() != rows * columns)
+            throw BadMessage("'matrix' is not a list of 12 numbers");
+        Affine map;
+        for (std::size_t i = 0; i < rows * columns; ++i) {
+            const Json& number = (*found)[i];
+            if (!number.is_number()) throw BadMessage("'matrix' is not a list of 12 numbers");
+            const auto row = static_cast<int>(i / columns), column = static_cast<int>(i % columns);
+            (column == 3 ? map.translation[row] : map.linear[column][row]) = number.get<double>();
+        }
+        return map;
+    }
+
+    Json pulled() const {
+        const std::optional<Vec3> from = fields_.vector("from"), to = fields_.vector("to");
+        if (!from || !to) throw BadMessage("'from' or 'to' is missing");
+        return change_json(pull(document_, fields_.needed_text("address"), *from, *to, asked_.context));
+    }
+
+    Json toggled() const {
+        const std::optional<bool> edge = fields_.flag("edge");
+        if (!edge) throw BadMessage("'edge' is missing");
+        return change_json(set_edge(document_, fields_.needed_text("from"), fields_.needed_text("to"), *edge,
+                                    asked_.context));
+    }
+
+    VariationKind kind() const {
+        const std::string name = fields_.needed_text("kind");
+        if (name == "seed") return VariationKind::seed;
+        if (name == "parameters") return VariationKind::parameters;
+        if (name == "rules") return VariationKind::rules;
+        throw BadMessage("'kind' is none of seed, parameters, rules");
+    }
+
+    Json varied() const {
+        constexpr std::uint64_t most_children = 100;
+        VariationOptions options;
+        options.kind = kind();
+        options.count = fields_.whole("count", most_children).value_or(options.count);
+        options.spread = std::clamp(fields_.number("spread").value_or(options.spread), 0.0, 1.0);
+        options.seed = fields_.whole("seed", UINT64_MAX).value_or(0);
+        const std::vector<ModelParameter> unknown;
+        Json children = Json::array();
+        for (const Variation& child :
+             vary(document_, asked_.parameters ? *asked_.parameters : unknown, options, asked_.context)) {
+            Json json{{"says", child.says}};
+            if (child.text) json["text"] = *child.text;
+            if (child.seed) json["seed"] = *child.seed;
+            if (!child.set.empty()) {
+                json["set"] = Json::object();
+                for (const auto& [name, value] : child.set)
+                    json["set"][name] = value;
+            }
+            children.push_back(std::move(json));
+        }
+        return {{"children", std::move(children)}};
+    }
+
+    const MessageReader fields_;
+    const Json& ask_;
+    const AskedText& asked_;
+    const Document document_;
+    const TextPositions positions_;
+};
+
+/// Maps that may come after one, by their names in maps_of(), which have that of their block where there are
+/// several; nothing where there is no digraph.
+std::optional<std::vector<std::string>> followers(const std::vector<Digraph>& digraphs,
+                                                  const std::string& name) {
+    for (const Digraph& digraph : digraphs) {
+        const std::string prefix = name.starts_with(digraph.block + ".") ? digraph.block + "." : "";
+        const auto found = std::ranges::find(digraph.maps, name.substr(prefix.size()));
+        if (found == digraph.maps.end() || (prefix.empty() && digraphs.size() > 1)) continue;
+        const std::vector<bool>& edges =
+            digraph.edges[static_cast<std::size_t>(found - digraph.maps.begin())];
+        std::vector<std::string> names;
+        for (std::size_t to = 0; to < edges.size(); ++to)
+            if (edges[to]) names.push_back(prefix + digraph.maps[to]);
+        return names;
+    }
+    return std::nullopt;
+}
+
+Json matrix_json(const Affine& map) {
+    Json numbers = Json::array();
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            numbers.push_back(column == 3 ? map.translation[row] : map.linear[column][row]);
+    return numbers;
+}
+
+} // namespace
 
 bool is_about_text(const std::string& what) {
     constexpr std::string_view known[] = {"complete", "hover", "definition", "rename", "format",
@@ -16,9 +197,32 @@ bool is_about_text(const std::string& what) {
     return std::ranges::find(known, what) != std::end(known);
 }
 
-nlohmann::json answer_about_text(const std::string& what, const nlohmann::json&, const StudioState&) {
-    // The place where compiler/editing answers.
-    throw BadMessage(fmt::format("'{}': not yet", what));
+Json answer_about_text(const std::string& what, const Json& ask, const AskedText& asked) {
+    if (asked.state.text->find('\r') != std::string::npos)
+        throw BadMessage("lines of the text do not end by line feeds alone");
+    return TextAsk(ask, asked).answer(what);
+}
+
+Json maps_json(const StudioState& state, const AnalysedModel& model) {
+    Json maps = Json::array();
+    if (state.text->find('\r') != std::string::npos) return maps;
+    const Document document(state.name, *state.text);
+    const TextPositions positions(document.text());
+    const std::vector<Digraph> digraphs = digraphs_of(document);
+    for (const EditableMap& map : maps_of(document, state.stages.lower, &model)) {
+        Json json{{"name", map.name},
+                  {"object", map.object},
+                  {"matrix", matrix_json(map.matrix)},
+                  {"box", box_json(map.box)},
+                  {"contraction", map.contraction},
+                  {"from", positions.utf16_of(map.span.begin)},
+                  {"to", positions.utf16_of(map.span.end)},
+                  {"movable", map.movable}};
+        if (!map.movable) json["why"] = map.why;
+        if (const auto names = followers(digraphs, map.name)) json["follows"] = *names;
+        maps.push_back(std::move(json));
+    }
+    return maps;
 }
 
 } // namespace graftal

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "compiler/editing/contraction_check.h"
+#include "compiler/session/values.h"
 #include "runtime/studio/studio_state.h"
 
 namespace graftal {
@@ -11,9 +14,19 @@ namespace graftal {
 /// Whether an ask of this name is about the text alone: completion, hovering, names, layout, maps, variation.
 bool is_about_text(const std::string& what);
 
-/// The fields of the answer (docs/studio.md). Requires is_about_text(), and a state with a text. Throws
-/// BadMessage.
-nlohmann::json answer_about_text(const std::string& what, const nlohmann::json& ask,
-                                 const StudioState& state);
+/// The text that asks are about, and what is known of its model.
+struct AskedText {
+    const StudioState& state;                                ///< has a text
+    const AnalysedModel* model = nullptr;                    ///< null: unknown, as of a text with errors
+    const std::vector<ModelParameter>* parameters = nullptr; ///< likewise
+    const EditContext& context;
+};
+
+/// The fields of the answer (docs/studio.md). Requires is_about_text(). Throws BadMessage, Cancelled and
+/// OutOfWork.
+nlohmann::json answer_about_text(const std::string& what, const nlohmann::json& ask, const AskedText& asked);
+
+/// The maps of the message `model`.
+nlohmann::json maps_json(const StudioState& state, const AnalysedModel& model);
 
 } // namespace graftal

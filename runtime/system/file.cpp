@@ -87,7 +87,10 @@ bool is_special_file(const std::string& path) {
 bool lies_in(const std::string& path, const std::string& folder) {
     std::error_code error, folder_error;
     // A path need not exist to its end, but a link without a target leads nowhere, and is refused.
-    const std::filesystem::path inner = std::filesystem::weakly_canonical(path, error);
+    // A relative one of which nothing exists would stay relative.
+    const std::filesystem::path whole = std::filesystem::absolute(path, error);
+    const std::filesystem::path inner =
+        error ? std::filesystem::path() : std::filesystem::weakly_canonical(whole, error);
     const std::filesystem::path outer = std::filesystem::canonical(folder, folder_error);
     if (error || folder_error || std::filesystem::is_symlink(inner, error)) return false;
     return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();

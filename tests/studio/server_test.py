@@ -20,8 +20,8 @@ PROGRAM = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else "build/rele
 
 CRYSTAL = """let spread = 0.5
 rifs crystal {
-  map n { scale 1/2  translate <0, spread, 0> }
-  map s { scale 1/2  translate <0, -spread, 0> }
+  map n { scale 1/2  translate <0, 1/2, 0> }
+  map s { scale 1/2  translate <0, -1/2, 0> }
   map e { scale 1/2  translate <spread, 0, 0> }
   terminal sphere
 }

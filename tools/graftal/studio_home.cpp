@@ -72,8 +72,12 @@ const Workers& ProgramHome::workers(int threads) {
     return workers_;
 }
 
+Translator ProgramHome::translator() const {
+    return importing_translator();
+}
+
 void ProgramHome::equip(Session& session) {
-    session.translate_with(importing_translator());
+    session.translate_with(translator());
     session.look_at_textures(
         [this](const std::string& name, TextureFacts& facts) { return textures_.look_at(name, facts); });
     session.load_sky_pictures([this](const std::string& name, LoadedSkyPicture& loaded) {

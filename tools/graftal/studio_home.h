@@ -34,6 +34,7 @@ class ProgramHome final : public StudioHome {
     std::string root() const override { return model_->root; }
     const Workers& workers(int threads) override;
     void equip(Session& session) override;
+    Translator translator() const override;
     Status load_textures(const Graph& graph, const View& view, ModelTextures& textures) override;
     void make_file(FileJob job, CancelFlag cancel, OnShare on_share, OnResult on_result) override;
     void draw_picture(FileJob job, CancelFlag cancel, OnPicture on_picture, OnEnd on_end) override;

@@ -4,7 +4,6 @@
 
 #include "compiler/session/session.h"
 #include "runtime/studio/address_text.h"
-#include "runtime/studio/utf16.h"
 #include "tests/unit/studio/page.h"
 
 namespace graftal {
@@ -51,7 +50,7 @@ TEST(Pointer, PickNamesThePartUnderThePixel) {
     EXPECT_EQ(picked["address"].get<std::string>().substr(0, 1), "d") << picked;
     EXPECT_EQ(picked["path"][0], "d");
     EXPECT_NEAR(picked["point"][0].get<double>(), 2.0 / 3, 0.1);
-    EXPECT_EQ(std::string(carpet).substr(picked["from"], 3), "map") << picked;
+    EXPECT_EQ(std::string(carpet).substr(picked["from"], 3), "e {") << "the map of the last step: " << picked;
     EXPECT_FALSE(page.ask("pick", {{"x", 1}, {"y", 1}}).contains("point")) << "the background";
 }
 
@@ -150,15 +149,6 @@ TEST(AddressText, FindsThePathAgain) {
     ASSERT_TRUE(found) << text;
     EXPECT_EQ(found->steps, path) << text;
     EXPECT_LT(text.size(), 40u) << text;
-}
-
-TEST(Utf16, CountsUnitsAndBytes) {
-    const std::string text = "a\xc3\xa4\xf0\x9f\x8c\xbfz\xff";
-    EXPECT_EQ(utf16_offset(text, 3), 2u);
-    EXPECT_EQ(utf16_offset(text, 7), 4u);
-    EXPECT_EQ(utf16_offset(text, 100), 6u);
-    for (const std::size_t bytes : {0u, 1u, 3u, 7u, 8u, 9u})
-        EXPECT_EQ(byte_offset(text, utf16_offset(text, bytes)), bytes);
 }
 
 } // namespace

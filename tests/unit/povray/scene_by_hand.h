@@ -52,7 +52,7 @@ struct Scene {
 
     PlacementGroup& group(std::uint32_t palette, std::vector<Placement> placements, PathTint tint = {}) {
         cut.placement_count += placements.size();
-        cut.groups.push_back({palette, tint, {}, std::move(placements)});
+        cut.groups.push_back({.palette = palette, .tint = tint, .placements = std::move(placements)});
         return cut.groups.back();
     }
 

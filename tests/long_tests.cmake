@@ -17,11 +17,17 @@ foreach(test
   unit/detail/Shell.TooManyTrianglesMakeItCoarserAndNotNothing
   unit/detail/Shell.WhatNobodySeesIsLeftOut
   unit/detail/Shell.WorkGrowsWithCellsAndNotWithCopies
+  unit/editing/Maps.RandomMatricesReadBack
+  unit/editing/Scenes.LayoutChangesNoModel
+  unit/editing/Scenes.LayoutOfUntidyTextsChangesNoModel
+  unit/editing/Scenes.RenamedLetsChangeNoModel
   unit/inst/InstHostile.a_chain_of_100000_objects_is_legal
   unit/inst/InstHostile.long_lines_times_many_objects_are_bounded
   unit/inst/InstHostile.many_errors_end
   unit/inst/InstHostile.wide_objects_are_bounded_by_the_number_of_instances
   unit/inst/Scatter.every_order_gives_the_count_inside_what_is_left_of_the_area
+  unit/lsp/LanguageServer.LooksAtEveryScene
+  unit/lsp/LanguageServer.TakesAnyMessage
   unit/lsys/LsysChance.everyWayOfCompilingDealsItOut
   unit/lsys/LsysComposer.drawsRandomModels
   unit/lsys/LsysErrors.limitsAreSaidOnce

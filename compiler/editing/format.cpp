@@ -297,7 +297,7 @@ class Formatter {
     std::vector<TextEdit> edits_;
 };
 
-/// What a text says, apart from the white space that does not count: that before a sign does.
+/// The words of a text, with the white space that counts: that before a sign does.
 std::string meaning_of(const Document& document) {
     std::string words;
     const std::string_view text = document.text();

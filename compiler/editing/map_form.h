@@ -29,7 +29,7 @@ class MapForm {
     bool translates(std::size_t number) const;
     /// The map with these numbers in place of its own; nothing where they make none.
     std::optional<Affine> at(const std::vector<double>& values) const;
-    /// As the text has it.
+    /// The map as the text has it.
     const Affine& matrix() const { return matrix_; }
     /// Whether it moves the plane z = 0 in itself, and its text leaves z to the rule of flat maps.
     bool flat() const { return flat_; }
@@ -44,7 +44,7 @@ class MapForm {
     /// Scales of fewer numbers, none of them with names, get one for each axis: two of a flat map. `lines`:
     /// gets their places.
     MapForm widened(std::vector<std::size_t>& lines) const;
-    /// The same that need not stay in the plane.
+    /// A copy that need not stay in the plane.
     MapForm in_space() const;
     /// Lines that were not in the text, at the end of the list: made of literal numbers without places.
     std::optional<MapForm> with(std::vector<TransformLine> lines) const;

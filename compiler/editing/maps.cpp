@@ -24,7 +24,7 @@ Box box_of(const AnalysedModel& model, ObjectId id) {
     return id < model.bounds.size() ? model.bounds[id].box : Box();
 }
 
-/// What a map maps: the sets of the masters of its object's instances.
+/// The box of the sets that a map maps: of the masters of its object's instances.
 Box mapped_box(const WrittenMap& map, const AnalysedModel& model) {
     Box box;
     const auto& objects = model.graph.objects;

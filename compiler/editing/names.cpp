@@ -123,7 +123,7 @@ class Collector {
             expressions(scope, line.numbers);
     }
 
-    // What all languages share
+    // Parts that all languages share
 
     void models(const std::vector<UseStatement>& uses) {
         for (const UseStatement& use : uses)

@@ -26,9 +26,9 @@ constexpr std::size_t most_changes = 4;
 class Draws {
   public:
     explicit Draws(CounterRandom random) : random_(random) {}
-    /// Of [0, 1).
+    /// A number of [0, 1).
     double unit() { return CounterRandom::unit(random_(next_++)); }
-    /// Of [-1, 1), and rarely near to 0: what hardly changes shows nothing.
+    /// A number of [-1, 1), and never near to 0: a child that hardly changes shows nothing.
     double change() {
         const double size = 0.25 + 0.75 * unit();
         return unit() < 0.5 ? -size : size;

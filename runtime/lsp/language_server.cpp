@@ -143,7 +143,7 @@ struct LanguageServer::OpenText {
     bool to_look_at = true;
 };
 
-/// What the methods of the protocol do.
+/// The methods of the protocol.
 class LanguageServer::Handlers {
   public:
     explicit Handlers(LanguageServer& server) : server_(server) {}

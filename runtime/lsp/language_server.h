@@ -42,7 +42,7 @@ class LanguageServer {
 
     /// The editor has said goodbye.
     bool ended() const { return ended_; }
-    /// Of the process: 0 after `shutdown` and `exit`, else 1.
+    /// The exit status of the process: 0 after `shutdown` and `exit`, else 1.
     int exit_status() const { return shut_down_ ? 0 : 1; }
 
   private:

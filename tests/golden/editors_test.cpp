@@ -46,12 +46,14 @@ TEST_F(Editors, LspServesUntilItIsToldToEnd) {
         message(R"({"jsonrpc":"2.0","id":1,"method":"initialize","params":{}})") +
         message(
             R"({"jsonrpc":"2.0","method":"textDocument/didOpen","params":{"textDocument":{"uri":"file:///m.inst","version":1,"text":"object m { cub }"}}})") +
-        "sleep 1; " + message(R"({"jsonrpc":"2.0","id":2,"method":"shutdown"})") +
+        "for i in $(seq 600); do grep -q publishDiagnostics out && break; sleep 0.1; done; " +
+        message(R"({"jsonrpc":"2.0","id":2,"method":"shutdown"})") +
         message(R"({"jsonrpc":"2.0","method":"exit"})");
-    const RunResult result = shell("( " + script + " ) | \"$graftal\" lsp");
+    const RunResult result = shell("( " + script + " ) | \"$graftal\" lsp > out");
+    const std::string out = read("out");
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_THAT(result.out, AllOf(HasSubstr("\"capabilities\""), HasSubstr("textDocument/publishDiagnostics"),
-                                  HasSubstr("did you mean 'cube'?"), HasSubstr("\"id\":2")));
+    EXPECT_THAT(out, AllOf(HasSubstr("\"capabilities\""), HasSubstr("textDocument/publishDiagnostics"),
+                           HasSubstr("did you mean 'cube'?"), HasSubstr("\"id\":2")));
     EXPECT_EQ(result.err, "");
 }
 

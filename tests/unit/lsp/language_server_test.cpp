@@ -209,8 +209,9 @@ TEST(LanguageServer, LooksAtEveryScene) {
         editor.open(uri, text);
         const auto lines = static_cast<std::uint64_t>(std::ranges::count(text, '\n')) + 1;
         for (int i = 0; i < 3; ++i) {
-            const Json place =
-                at(uri, static_cast<int>(random(n++) % lines), static_cast<int>(random(n++) % 60));
+            const auto line = static_cast<int>(random(n++) % lines);
+            const auto character = static_cast<int>(random(n++) % 60);
+            const Json place = at(uri, line, character);
             items += editor.result("textDocument/completion", place)["items"].size();
             hovers += editor.result("textDocument/hover", place).is_null() ? 0 : 1;
             editor.result("textDocument/definition", place);

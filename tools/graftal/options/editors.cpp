@@ -20,7 +20,8 @@ void add_format(CLI::App& app, Options& options) {
 }
 
 void add_lsp(CLI::App& app, Options&) {
-    app.add_flag("--stdio")->description("As it does in any case: some editors say so");
+    app.add_flag("--stdio")->description(
+        "Speak on standard input and output, as the command always does: some editors ask for it");
     app.footer(
         "Editors start this command, and speak the Language Server Protocol with it on standard input\n"
         "and output: docs/editors.md has configurations.\n"

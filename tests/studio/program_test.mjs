@@ -47,7 +47,7 @@ async function serve(text = fern) {
 
 const browser = await open_browser(modules), test = tester(browser, serve);
 // The first picture is enough to begin with: the tests draw drafts.
-const small = { width: 720, height: 440, ready: '#status:not(:empty)' };
+const small = { width: 820, height: 640, ready: '#status:not(:empty)' };
 
 await test('the text, a knob, the camera; all undone', async (hand, page) => {
   const now = () => page.evaluate(() => window.studio.history.now);

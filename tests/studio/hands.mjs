@@ -18,7 +18,7 @@ export async function open_browser(modules) {
 export function tester(browser, serve) {
   const counts = { passed: 0, failed: 0 };
   /** `check` gets a hand on a page of its own. */
-  async function test(name, check, { width = 1280, height = 720, dark = false, opened, hash = '', touch = false } = {}) {
+  async function test(name, check, { width = 1280, height = 720, dark = false, opened, hash = '', touch = false, ready = 'body[data-picture=done]' } = {}) {
     if (process.env.ONLY && !name.includes(process.env.ONLY)) return;
     const session = await serve(opened);
     const context = await browser.newContext({
@@ -32,7 +32,7 @@ export function tester(browser, serve) {
     page.on('request', (request) => !/^(https?:\/\/127\.0\.0\.1|data:|blob:)/.test(request.url()) && faults.push(`asked ${request.url()}`));
     try {
       await page.goto(session.address + hash);
-      await page.waitForSelector('body[data-picture=done]');
+      await page.waitForSelector(ready);
       await check(hand_on(page, session), page, session);
       assert.deepEqual(faults, []);
       ++counts.passed;
@@ -67,7 +67,7 @@ function hand_on(page, { told }) {
     /** Waits until the picture of the last state is complete. */
     async settled() {
       await page.waitForTimeout(60);
-      await page.waitForSelector('body[data-picture=done]');
+      await page.waitForSelector('body[data-picture=done]', { timeout: 120_000 });
     },
     async changes(act) {
       const before = await hand.pixels();

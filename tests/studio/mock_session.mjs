@@ -181,8 +181,6 @@ function values_of({ text, set }) {
 
 function maps_of(state) {
   const values = values_of(state), number = (word) => values[word] ?? Number(word);
-  const followed = [...state.text.matchAll(/follow (\w+) -> (\w+)/g)].map(([, from, to]) => `${from} ${to}`);
-  const names = [...state.text.matchAll(/map (\w+)/g)].map(([, name]) => name);
   return [...state.text.matchAll(/map (\w+)\s*\{([^}]*)\}/g)].map((found) => {
     const [whole, name, body] = found;
     let matrix;
@@ -198,9 +196,14 @@ function maps_of(state) {
     return {
       name, object: 'fern', matrix, box: box_of(state), contraction: Math.hypot(matrix[1], matrix[5]),
       from: found.index, to: found.index + whole.length, movable: name !== 'stem', why: name === 'stem' ? 'Its scale is one of a table.' : undefined,
-      follows: names.length > 24 ? undefined : names.filter((other) => followed.length === 0 || followed.includes(`${name} ${other}`)),
     };
   });
+}
+
+function digraphs_of({ text }) {
+  const followed = [...text.matchAll(/follow (\w+) -> (\w+)/g)].map(([, from, to]) => `${from} ${to}`);
+  const maps = [...text.matchAll(/map (\w+)/g)].map(([, name]) => name);
+  return [{ block: 'fern', maps, edges: maps.map((from) => maps.map((to) => followed.length === 0 || followed.includes(`${from} ${to}`))) }];
 }
 
 const is_solid = ({ text }) => text.includes('solid');
@@ -214,7 +217,7 @@ function model_of(state) {
   return {
     parameters, box: box_of(state),
     camera: state.camera ?? (is_solid(state) ? { location: [2.4, 1.8, 4], look_at: [0, 0, 0], up: [0, 1, 0], angle_deg: 45 }
-      : { location: [0.1, 5, 17], look_at: [0.1, 5, 0], up: [0, 1, 0], angle_deg: 60 }), stats: { steps: 12, seed: 1 }, maps: maps_of(state),
+      : { location: [0.1, 5, 17], look_at: [0.1, 5, 0], up: [0, 1, 0], angle_deg: 60 }), stats: { steps: 12, seed: 1 }, maps: maps_of(state), digraphs: digraphs_of(state),
   };
 }
 

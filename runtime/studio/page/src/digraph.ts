@@ -1,44 +1,44 @@
 // Which map may follow which, as a matrix of switches: row first, then column.
 import { element } from './dom';
-import type { Edit, ModelMap } from './protocol';
+import type { ControlDigraph, Edit } from './protocol';
 import type { Studio } from './studio';
 
 const most_maps = 24;
 
 export class Digraph {
   readonly element = element('div', { class: 'digraph' });
+  private shown = false;
 
   constructor(private readonly studio: Studio) {}
 
-  private shown = false;
-
   show(shown = this.shown): void {
     this.shown = shown;
-    const all = shown ? (this.studio.model?.maps ?? []) : [];
-    const maps = all.length <= most_maps ? all.filter(({ follows }) => follows) : [];
+    const digraphs = shown ? (this.studio.model?.digraphs ?? []) : [];
     const focus = (document.activeElement as HTMLElement | null)?.dataset?.['edge'];
-    this.element.replaceChildren();
-    if (maps.length < 2) return;
-    const names = maps.map(({ name }) => name);
-    this.element.append(
-      element('h2', {}, 'Which map may follow which'),
-      element('table', {},
-        element('thead', {}, element('tr', {}, element('td', {}), ...names.map((name) => element('th', { scope: 'col' }, element('span', {}, name))))),
-        element('tbody', {}, ...maps.map((map) => element('tr', {}, element('th', { scope: 'row' }, map.name),
-          ...names.map((name) => element('td', {}, this.toggle(map, name))))))),
-    );
+    this.element.replaceChildren(...digraphs.filter(({ maps }) => maps.length > 1 && maps.length <= most_maps)
+      .flatMap((digraph) => this.table(digraph, digraphs.length > 1)));
     if (focus) this.element.querySelector<HTMLElement>(`[data-edge="${CSS.escape(focus)}"]`)?.focus();
   }
 
-  private toggle(map: ModelMap, to: string): HTMLElement {
-    const edge = map.follows!.includes(to);
+  private table({ block, maps, edges }: ControlDigraph, is_one_of_many: boolean): HTMLElement[] {
+    return [
+      element('h2', {}, `Which map may follow which${is_one_of_many ? `: ${block}` : ''}`),
+      element('table', {},
+        element('thead', {}, element('tr', {}, element('td', {}), ...maps.map((name) => element('th', { scope: 'col' }, name)))),
+        element('tbody', {}, ...maps.map((from, row) => element('tr', {}, element('th', { scope: 'row' }, from),
+          ...maps.map((to, column) => element('td', {}, this.toggle(from, to, Boolean(edges[row]?.[column])))))))),
+    ];
+  }
+
+  private toggle(from: string, to: string, edge: boolean): HTMLElement {
     return element('button', {
-      type: 'button', class: 'edge', 'aria-pressed': String(edge), 'data-edge': `${map.name} ${to}`,
-      'aria-label': `${to} may follow ${map.name}`, title: `${to} may follow ${map.name}`,
+      type: 'button', class: 'edge', 'aria-pressed': String(edge), 'data-edge': `${from} ${to}`,
+      'aria-label': `${to} may follow ${from}`, title: `${to} may follow ${from}`,
       onclick: async () => {
         try {
-          const { edits } = await this.studio.session.ask('digraph', { object: map.object, from: map.name, to, edge: !edge });
-          this.studio.edit(edits as Edit[]);
+          const { edits, contracts, why } = await this.studio.session.ask('digraph', { from, to, edge: !edge });
+          if (contracts === false) this.studio.say(String(why ?? 'The maps would not shrink.'));
+          else this.studio.edit(edits as Edit[]);
         } catch (error) {
           this.studio.say((error as Error).message);
         }

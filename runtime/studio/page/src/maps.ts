@@ -278,7 +278,7 @@ export class Maps {
   private async ask_now({ map, matrix }: Wish): Promise<void> {
     const { session, history } = this.studio, before = history.now.text;
     try {
-      const answer = await session.ask('map', { name: map.name, object: map.object, matrix });
+      const answer = await session.ask('map', { name: map.name, matrix });
       if (history.now.text !== before) return;
       if (answer['contracts'] === false) this.refused.set(map.name, String(answer['why'] ?? 'It would not shrink.'));
       else this.refused.delete(map.name);

@@ -64,8 +64,13 @@ export interface ModelMap {
   to: number;
   movable: boolean;
   why?: string;
-  /** Names of the maps that may come after this one; missing where the model has no digraph. */
-  follows?: string[];
+}
+
+export interface ControlDigraph {
+  block: string;
+  maps: string[];
+  /** By the map before, then by the map after it. */
+  edges: boolean[][];
 }
 
 export interface Box {
@@ -97,6 +102,7 @@ export interface Model {
   box: Box | null;
   stats: Record<string, unknown> | string | null;
   maps: ModelMap[];
+  digraphs?: ControlDigraph[];
 }
 
 export interface Progress {

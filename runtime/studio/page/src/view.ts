@@ -6,7 +6,7 @@ import type { Camera } from './protocol';
 /** A notch of a wheel enlarges so much. */
 const notch_px = 120, notch_factor = 1.3;
 /** Asks may enlarge so much at once. */
-const most_factor = 64, most_waiting = 12;
+const most_factor = 64, most_waiting = 100;
 const turn_rad_of_px = 0.008, key_turn_rad = 0.1, key_pan_px = 40;
 
 /** An enlargement that the picture shows already, before the session has drawn it. */

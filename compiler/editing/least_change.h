@@ -6,7 +6,8 @@
 
 namespace graftal {
 
-/// The values that are to become zero, as a function of the numbers; nothing for numbers that are not allowed.
+/// The values that are to become zero, as a function of the numbers; nothing for numbers that are not
+/// allowed.
 using Residual = std::function<std::optional<std::vector<double>>(const std::vector<double>& numbers)>;
 
 /// Numbers for which the residual is zero to within `tolerance` in each entry, near to the first ones:

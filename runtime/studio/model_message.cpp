@@ -129,7 +129,8 @@ nlohmann::json model_message(const StudioState& state, const LoweredModel& lower
              camera_json(viewed.view.camera, distance_of(viewed, state.stages.view.zoom.zoom.has_value()))},
             {"box", box_json(box)},
             {"stats", nlohmann::json::parse(stats_json(analysed, levels, sources))},
-            {"maps", maps_json(state, analysed)}};
+            {"maps", maps_json(state, analysed)},
+            {"digraphs", digraphs_json(state)}};
 }
 
 } // namespace graftal

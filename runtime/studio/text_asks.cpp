@@ -163,24 +163,6 @@ class TextAsk {
     const TextPositions positions_;
 };
 
-/// Maps that may come after one, by their names in maps_of(), which have that of their block where there are
-/// several; nothing where there is no digraph.
-std::optional<std::vector<std::string>> followers(const std::vector<Digraph>& digraphs,
-                                                  const std::string& name) {
-    for (const Digraph& digraph : digraphs) {
-        const std::string prefix = name.starts_with(digraph.block + ".") ? digraph.block + "." : "";
-        const auto found = std::ranges::find(digraph.maps, name.substr(prefix.size()));
-        if (found == digraph.maps.end() || (prefix.empty() && digraphs.size() > 1)) continue;
-        const std::vector<bool>& edges =
-            digraph.edges[static_cast<std::size_t>(found - digraph.maps.begin())];
-        std::vector<std::string> names;
-        for (std::size_t to = 0; to < edges.size(); ++to)
-            if (edges[to]) names.push_back(prefix + digraph.maps[to]);
-        return names;
-    }
-    return std::nullopt;
-}
-
 Json matrix_json(const Affine& map) {
     Json numbers = Json::array();
     for (int row = 0; row < 3; ++row)
@@ -208,7 +190,6 @@ Json maps_json(const StudioState& state, const AnalysedModel& model) {
     if (state.text->find('\r') != std::string::npos) return maps;
     const Document document(state.name, *state.text);
     const TextPositions positions(document.text());
-    const std::vector<Digraph> digraphs = digraphs_of(document);
     for (const EditableMap& map : maps_of(document, state.stages.lower, &model)) {
         Json json{{"name", map.name},
                   {"object", map.object},
@@ -219,10 +200,17 @@ Json maps_json(const StudioState& state, const AnalysedModel& model) {
                   {"to", positions.utf16_of(map.span.end)},
                   {"movable", map.movable}};
         if (!map.movable) json["why"] = map.why;
-        if (const auto names = followers(digraphs, map.name)) json["follows"] = *names;
         maps.push_back(std::move(json));
     }
     return maps;
+}
+
+Json digraphs_json(const StudioState& state) {
+    Json list = Json::array();
+    if (state.text->find('\r') != std::string::npos) return list;
+    for (const Digraph& digraph : digraphs_of(Document(state.name, *state.text)))
+        list.push_back({{"block", digraph.block}, {"maps", digraph.maps}, {"edges", digraph.edges}});
+    return list;
 }
 
 } // namespace graftal

@@ -29,4 +29,8 @@ nlohmann::json answer_about_text(const std::string& what, const nlohmann::json& 
 /// The maps of the message `model`.
 nlohmann::json maps_json(const StudioState& state, const AnalysedModel& model);
 
+/// Which maps may follow which, of each block that says so (`model`, docs/studio.md). Requires a state with a
+/// text.
+nlohmann::json digraphs_json(const StudioState& state);
+
 } // namespace graftal

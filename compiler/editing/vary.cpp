@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "compiler/editing/map_form.h"
+#include "compiler/editing/maps/map_form.h"
 #include "compiler/editing/text_edit.h"
 #include "compiler/lsys/parse/turtle_command.h"
 #include "compiler/support/counter_random.h"

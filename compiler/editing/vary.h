@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "compiler/editing/contraction_check.h"
 #include "compiler/editing/document.h"
+#include "compiler/editing/maps/contraction_check.h"
 #include "compiler/lower/lower_options.h"
 
 namespace graftal {

@@ -20,7 +20,7 @@ struct ExpressionFunction {
 };
 
 std::span<const ExpressionFunction> expression_functions();
-/// Those of random numbers: see chance_function().
+/// Functions of random numbers: see chance_function().
 std::span<const ExpressionFunction> chance_functions();
 /// The function of this name, or null.
 const ExpressionFunction* expression_function(std::string_view name);

@@ -255,7 +255,7 @@ Pointer::Place Pointer::rooted(const ViewedModel& viewed, const std::optional<Me
     camera.width *= scale;
     distance *= scale;
     if (camera.orthographic) {
-        // What lies before the picture is in reach of it (zoom/reroot.cpp).
+        // Parts before the picture are in reach of it (zoom/reroot.cpp).
         constexpr double before = 20;
         const Vec3 aside = camera.location - glm::dot(camera.location, camera.direction) * camera.direction;
         camera.location = aside - before * camera.width * camera.direction;

@@ -75,7 +75,7 @@ std::vector<ShownTile> tiles_of_picture(const Image& developed, int pass) {
                     const auto pixel =
                         static_cast<std::size_t>(y) * static_cast<std::size_t>(developed.width) +
                         static_cast<std::size_t>(x);
-                    // Of a grey picture the one channel counts for all.
+                    // A grey picture has one channel for all.
                     const int channel = developed.channels < 3 ? 0 : c;
                     const std::size_t sample = static_cast<std::size_t>(developed.channels) * pixel +
                                                static_cast<std::size_t>(channel);

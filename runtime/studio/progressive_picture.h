@@ -58,7 +58,7 @@ class ProgressivePicture {
     bool step(const std::function<bool()>& cancelled, const std::function<bool()>& for_good,
               const PictureListener& listener);
 
-    /// Of the clock, for a sample of the rough passes; 0 before them.
+    /// Seconds of the clock for a sample of the rough passes; 0 before them.
     double rough_seconds_a_sample() const { return rough_seconds_a_sample_; }
     bool done() const { return phase_ == Phase::done; }
     /// Only the passes are left that no clock decides on.

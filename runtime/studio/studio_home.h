@@ -61,7 +61,7 @@ class StudioHome {
     virtual const Workers& workers(int threads) = 0;
     /// Gives a new session what it asks of textures, skies and foreign models.
     virtual void equip(Session&) {}
-    /// Of foreign models.
+    /// Reader of foreign models.
     virtual Translator translator() const { return no_translator(); }
     /// Reads the textures of the materials and the ground.
     virtual Status load_textures(const Graph&, const View&, ModelTextures&) { return {}; }

@@ -21,7 +21,7 @@ namespace graftal {
 namespace {
 
 constexpr std::size_t most_message_bytes = 16u << 20u;
-/// Of a zoom, at once.
+/// Factor of one ask for a zoom.
 constexpr double least_factor = 1e-3;
 /// Asks, and faults, that wait for their answers.
 constexpr std::size_t most_waiting = 256;

@@ -79,7 +79,7 @@ ZoomRequest read_zoom(const std::string& at, const std::string& factor) {
 
 namespace {
 
-/// As `--steps`: between whole steps there is a time.
+/// Reads `steps`, as `--steps` means it: between whole steps there is a time.
 void read_steps(const MessageReader& message, LowerOptions& lower) {
     if (const std::optional<double> steps = message.number("steps")) {
         if (!(*steps >= 0 && *steps <= static_cast<double>(most_steps)))

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "compiler/editing/contraction_check.h"
+#include "compiler/editing/maps/contraction_check.h"
 #include "compiler/session/values.h"
 #include "runtime/studio/studio_state.h"
 

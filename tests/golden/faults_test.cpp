@@ -168,7 +168,7 @@ TEST_F(Faults, CoarserFramesAreSaid) {
     ASSERT_EQ(graftal(animate).status, 0);
     const std::string good = shell("md5sum a.png").out;
     int coarser = 0;
-    for (int number = 24000; number <= 25400; number += 100) {
+    for (int number = 24000; number <= 28800; number += 200) {
         const RunResult result = with("alloc:" + std::to_string(number), animate);
         EXPECT_THAT(result.status, AnyOf(Eq(0), Eq(1), Eq(3))) << number;
         if (result.status != 0 || shell("md5sum a.png").out == good) continue;

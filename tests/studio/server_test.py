@@ -192,7 +192,7 @@ class BrokenClients(Served):
                         page.receive()
             page.number += 1
             last = page.show(**SMALL)
-            page.until(lambda message: is_done(message) and message["number"] == last)
+            page.until(lambda message: is_done(message) and message["number"] == last, 300)
         self.assertEqual(self.files(), [])
         self.works()
 

@@ -1,4 +1,4 @@
-#include "compiler/editing/maps.h"
+#include "compiler/editing/maps/maps.h"
 
 #include <cmath>
 #include <fstream>

@@ -10,7 +10,7 @@
 #include "compiler/editing/complete.h"
 #include "compiler/editing/format.h"
 #include "compiler/editing/hover.h"
-#include "compiler/editing/maps.h"
+#include "compiler/editing/maps/maps.h"
 #include "compiler/editing/names.h"
 #include "compiler/editing/rename.h"
 #include "compiler/languages/lower.h"

@@ -25,9 +25,9 @@ TEST(LibraryWords, AreKnownForEveryOptionThatMessagesName) {
         for (const auto& file :
              std::filesystem::recursive_directory_iterator(GRAFTAL_SOURCE_DIR + std::string(folder))) {
             const std::string extension = file.path().extension().string(), path = file.path().string();
-            // A farm's texts are for its command; the other file has the names themselves.
+            // Texts of farms and of the studio name commands; the other file has the names themselves.
             if ((extension != ".cpp" && extension != ".h") || path.find("/farm/") != std::string::npos ||
-                path.find("library_words") != std::string::npos)
+                path.find("/studio/") != std::string::npos || path.find("library_words") != std::string::npos)
                 continue;
             std::ifstream in(file.path());
             for (std::string line; std::getline(in, line);) {

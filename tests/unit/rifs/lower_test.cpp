@@ -270,8 +270,8 @@ TEST(LowerRifs, namesThatAreNotThere) {
               "5:10: 'cbue' is neither a primitive nor a used model\n"
               "6:10: 'leaf' is neither a primitive nor a used model\n"
               "4:7: 'rifs r' has no map 'q'\n");
-    EXPECT_EQ(messages_of("rifs r { map a from s { scale 1/2 } map b { scale 1/2 material wood } }"),
-              "1:64: unknown material 'wood'\n"
+    EXPECT_EQ(messages_of("rifs r { map a from s { scale 1/2 } map b { scale 1/2 material wodo } }"),
+              "1:64: unknown material 'wodo'\n"
               "1:21: unknown rifs 's'\n");
 }
 

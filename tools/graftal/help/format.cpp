@@ -25,7 +25,7 @@ const std::vector<OptionGroup>& option_groups() {
         {"Picture",
          {"--size", "--engine", "--device", "--quality", "--antialias", "--plain-light", "--bits", "--tile",
           "--watch"}},
-        {"Camera", {"--camera", "--at", "--zoom"}},
+        {"Camera", {"--camera", "--at", "--zoom", "--eye"}},
         {"Model", {"--steps", "--set", "--seed"}},
         {"Detail and cost", {"--error", "--error-world", "--work", "--memory", "--threads"}},
         {"graftal's engines", {"--progressive", "--no-progressive", "--samples", "--noise", "--aovs"}},

@@ -1,4 +1,4 @@
-#include "compiler/editing/map_form.h"
+#include "compiler/editing/maps/map_form.h"
 
 #include <algorithm>
 #include <cmath>

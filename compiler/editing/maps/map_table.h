@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/editing/map_form.h"
+#include "compiler/editing/maps/map_form.h"
 #include "compiler/inst/parse/ast.h"
 
 namespace graftal {

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/editing/contraction_check.h"
 #include "compiler/editing/document.h"
+#include "compiler/editing/maps/contraction_check.h"
 #include "compiler/editing/text_edit.h"
 #include "compiler/session/values.h"
 #include "compiler/support/bounds.h"

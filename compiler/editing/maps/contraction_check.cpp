@@ -1,4 +1,4 @@
-#include "compiler/editing/contraction_check.h"
+#include "compiler/editing/maps/contraction_check.h"
 
 #include <utility>
 

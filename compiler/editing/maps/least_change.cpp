@@ -1,4 +1,4 @@
-#include "compiler/editing/least_change.h"
+#include "compiler/editing/maps/least_change.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "compiler/editing/maps.h"
+#include "compiler/editing/maps/maps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "compiler/editing/least_change.h"
-#include "compiler/editing/map_table.h"
+#include "compiler/editing/maps/least_change.h"
+#include "compiler/editing/maps/map_table.h"
 #include "compiler/graph/graph.h"
 
 namespace graftal {

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <glm/matrix.hpp>
 
-#include "compiler/editing/least_change.h"
-#include "compiler/editing/map_table.h"
-#include "compiler/editing/maps.h"
+#include "compiler/editing/maps/least_change.h"
+#include "compiler/editing/maps/map_table.h"
+#include "compiler/editing/maps/maps.h"
 #include "compiler/languages/lower.h"
 #include "compiler/zoom/address.h"
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "compiler/editing/maps.h"
+#include "compiler/editing/maps/maps.h"
 #include "compiler/syntax/lexer.h"
 
 namespace graftal {

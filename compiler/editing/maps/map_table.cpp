@@ -1,4 +1,4 @@
-#include "compiler/editing/map_table.h"
+#include "compiler/editing/maps/map_table.h"
 
 #include <algorithm>
 #include <map>

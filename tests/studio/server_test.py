@@ -161,7 +161,8 @@ class BrokenClients(Served):
         self.assertLess(self.studio.resident_mib(), before + 150)
         self.works()
 
-    def test_ten_thousand_random_messages(self):
+    def test_random_messages(self):
+        """As many as STUDIO_MESSAGES says; 10,000 take about 45 seconds of a processor."""
         chance = random.Random(2)
         values = [None, True, -1, 0, 1, 2, 7.5, 1e300, "", "x", "crystal.rifs", "native", "1e30", "2^99", "draft", [],
                   [0, 0, 1], [1e300, 0, 0], {}, {"spread": 0.3}, {"location": [0, 0, 5]}, CRYSTAL, CRYSTAL[:60],
@@ -174,7 +175,7 @@ class BrokenClients(Served):
         with self.studio.page() as page:
             page.receive()
             page.show(**SMALL)
-            for i in range(10_000):
+            for i in range(int(os.environ.get("STUDIO_MESSAGES", "1500"))):
                 kind = chance.randrange(4)
                 message = {chance.choice(fields): chance.choice(values) for _ in range(chance.randrange(6))}
                 if kind == 0:

@@ -1,4 +1,4 @@
-// Eight other models around this one: other seeds, other numbers or other rules. A click makes one of them the centre.
+// Eight other models around this one: other seeds, other knobs or other rules. A click makes one of them the centre.
 import { element } from './dom';
 import { inflate, type Choices, type Tile } from './protocol';
 import { tile_data } from './picture';
@@ -23,7 +23,7 @@ export class Vary {
 
   constructor(private readonly grid: HTMLElement, private readonly studio: Studio) {
     this.kind = element('select', { id: 'vary-kind' },
-      element('option', { value: 'parameters' }, 'numbers'), element('option', { value: 'seed' }, 'seeds'), element('option', { value: 'rules' }, 'rules'));
+      element('option', { value: 'parameters' }, 'knobs'), element('option', { value: 'seed' }, 'seeds'), element('option', { value: 'rules' }, 'rules'));
     this.spread = element('input', { type: 'range', id: 'vary-spread', min: 0.02, max: 1, step: 0.01, value: 0.25 });
     this.kind.onchange = this.spread.onchange = () => this.fill();
     this.element = element('div', {},
@@ -40,6 +40,8 @@ export class Vary {
     this.grid.hidden = !shown;
     if (shown && !this.shown) {
       this.shown = true;
+      // Models without knobs have numbers in their rules.
+      if (this.studio.model && !this.studio.model.parameters.length && this.kind.value === 'parameters') this.kind.value = 'rules';
       this.fill();
     } else if (!shown) {
       this.shown = false;

@@ -174,7 +174,7 @@ const browser = await chromium.launch({
 });
 
 /** Opens the page with a cold cache; `check` gets it when its first picture is there. */
-async function page_test(name, check, { hash = '', width = 960, height = 600 } = {}) {
+async function page_test(name, check, { hash = '', width = 820, height = 420 } = {}) {
   await test(name, async () => {
     const context = await browser.newContext({ viewport: { width, height } });
     const page = await context.newPage(), faults = [];
@@ -219,6 +219,7 @@ const first_pixels_ms = async (page, choices) => {
 await page_test('a page without a program: an error, its mending, a slider', async (page, first_ms) => {
   console.log(`the first picture after ${Math.round(first_ms)} ms`);
   assert.equal(await page.evaluate(() => window.studio.hello.home), 'browser');
+  await page.evaluate(() => window.studio.change({ quality: 'draft' }));
   await settled(page);
   const before = await pixels(page), text = await page.evaluate(() => window.studio.history.now.text);
   await page.evaluate((now) => window.studio.change({ text: now }), text.replace('terminal sphere', 'terminal sphere oops'));
@@ -250,7 +251,6 @@ const slow = {
   text: 'lsys slow {\n  angle 25\n  steps 19\n  axiom A(1)\n  A(s) -> F(s)[+A(s*random(0.8, 0.9))][-A(s*0.8)]\n}\n',
 };
 await page_test('a model that takes long is left for the next one', async (page) => {
-  await settled(page);
   const crystal = await page.evaluate(() => ({ name: window.studio.history.now.name, text: window.studio.history.now.text }));
   await page.waitForTimeout(2000);
   await page.evaluate((made) => window.studio.change(made), slow);
@@ -260,7 +260,6 @@ await page_test('a model that takes long is left for the next one', async (page)
 });
 
 await page_test('first pixels of scenes', async (page) => {
-  await settled(page);
   for (const name of drawn.slice(0, 10).filter((_, i) => i % 2 === 0)) {
     const made = scene(name);
     const ms = [await first_pixels_ms(page, made), await first_pixels_ms(page, { text: made.text + '\n' })];

@@ -53,15 +53,16 @@ function(graftal_targets result)
   set(${result} ${ARGN} PARENT_SCOPE)
 endfunction()
 
-# graftal_layer(FOLDER [USES folder...] [LINK target...] [PRIVATE_LINK target...] [WITHOUT folder])
-# makes a library from the sources of FOLDER, its sub-rooms included, apart from those in FOLDER/folder.
+# graftal_layer(FOLDER [USES folder...] [LINK target...] [PRIVATE_LINK target...] [WITHOUT folder|folder...])
+# makes a library from the sources of FOLDER, its sub-rooms included, apart from those in the
+# folders FOLDER/folder.
 function(graftal_layer folder)
   cmake_parse_arguments(arg "" "WITHOUT" "USES;LINK;PRIVATE_LINK" ${ARGN})
   graftal_targets(name ${folder})
   graftal_targets(layers ${arg_USES})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
   if(arg_WITHOUT)
-    list(FILTER sources EXCLUDE REGEX "/${folder}/${arg_WITHOUT}/")
+    list(FILTER sources EXCLUDE REGEX "/${folder}/(${arg_WITHOUT})/")
   endif()
   add_library(${name} STATIC ${sources})
   set_property(GLOBAL APPEND PROPERTY GRAFTAL_LAYERS ${name})

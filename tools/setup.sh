@@ -34,6 +34,19 @@ install_npm_packages() {
     mv "$folder/npm-shrinkwrap.json" "$folder/package-lock.json"
 }
 
+# build_web TARGET...: builds by emcc (3.1.50 or later, as the package emscripten of Debian 13 has it) what runs without an
+# operating system, into build/web.
+build_web() {
+    command -v emcmake >/dev/null || { echo "there is no emcc: it is in the Debian 13 package emscripten" >&2 && return 3; }
+    # Only these: other headers of the system are not those of the browser.
+    mkdir -p "$root/build/web_headers"
+    local headers
+    for headers in /usr/include/{fmt,glm,boost,nlohmann,eigen3/Eigen}; do
+        [[ -e $root/build/web_headers/${headers##*/} ]] || ln -s "$headers" "$root/build/web_headers"
+    done
+    (cd "$root" && emcmake cmake --preset web && cmake --build --preset web --target "$@") >&2
+}
+
 # Where ccache is installed, CMake is to use it.
 use_ccache() {
     if command -v ccache >/dev/null; then

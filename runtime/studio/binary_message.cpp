@@ -2,10 +2,6 @@
 
 #include <array>
 
-#include <zlib.h>
-
-#include "compiler/support/check.h"
-
 namespace graftal {
 
 namespace {
@@ -14,22 +10,13 @@ constexpr std::uint32_t tile_mark = 0x4c495447, file_mark = 0x4c494647; // "GTIL
 
 using Words = std::array<std::uint32_t, 8>;
 
-std::string message(const Words& words, std::string_view bytes) {
-    constexpr int fast = 1;
-    uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+std::string message(const Words& words, std::string_view deflated) {
     std::string text;
-    text.reserve(4 * words.size() + size);
+    text.reserve(sizeof(Words) + deflated.size());
     for (const std::uint32_t word : words)
         for (int shift = 0; shift < 32; shift += 8)
             text += static_cast<char>(word >> shift & 0xffu);
-    const std::size_t head = text.size();
-    text.resize(head + size);
-    const int done =
-        compress2(reinterpret_cast<Bytef*>(text.data() + head), &size,
-                  reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), fast);
-    GRAFTAL_CHECK(done == Z_OK, "studio: zlib has refused a message");
-    text.resize(head + size);
-    return text;
+    return text.append(deflated);
 }
 
 std::uint32_t word(int number) {
@@ -51,16 +38,15 @@ std::optional<std::uint32_t> state_of_tile(std::string_view message) {
     return number < first_ask_id ? std::optional(number) : std::nullopt;
 }
 
-std::string tile_message(const TileHead& head, std::string_view samples) {
+std::string tile_message(const TileHead& head, std::string_view deflated) {
     const Tile& tile = head.tile;
     return message({tile_mark, head.number, head.pass, word(tile.x), word(tile.y), word(tile.width),
                     word(tile.height), word(head.block)},
-                   samples);
+                   deflated);
 }
 
-std::string file_message(std::uint32_t id, std::string_view name, std::string_view contents) {
-    return message({file_mark, id, static_cast<std::uint32_t>(name.size()), 0, 0, 0, 0, 0},
-                   std::string(name) + std::string(contents));
+std::string file_message(std::uint32_t id, std::size_t name_bytes, std::string_view deflated) {
+    return message({file_mark, id, static_cast<std::uint32_t>(name_bytes), 0, 0, 0, 0, 0}, deflated);
 }
 
 } // namespace graftal

@@ -24,8 +24,15 @@ constexpr std::uint64_t rough_visits = 1024;
 constexpr double rough_work_seconds = 0.5;
 /// Blocks from which on a pass is one piece of work.
 constexpr int whole_block = 8;
-/// Pixels along a side of a window: for few workers, and for many.
-constexpr int window_px = 128, wide_window_px = 256, few_workers = 4;
+/// Pixels along a side of a window: for one worker, which hears nothing while it draws one, for few, and for
+/// many.
+constexpr int lone_window_px = 64, window_px = 128, wide_window_px = 256, few_workers = 4;
+
+int window_side(int workers) {
+    if (workers == 1) return lone_window_px;
+    return workers > few_workers ? wide_window_px : window_px;
+}
+
 /// Samples of a pass for each of the pass before.
 constexpr int growth_of_samples = 4;
 
@@ -160,8 +167,7 @@ void ProgressivePicture::start_pass(const Sampling& sampling) {
     if (sampling.block >= whole_block) {
         whole_.push_back({whole_of(view().size), {}});
     } else if (windows_.empty()) {
-        const int side = workers_().count() > few_workers ? wide_window_px : window_px;
-        for (const Tile& tile : windows_of(view().size, side))
+        for (const Tile& tile : windows_of(view().size, window_side(workers_().count())))
             windows_.push_back({tile, {}});
     }
 }

@@ -2,13 +2,16 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "compiler/detail/detail_options.h"
 #include "compiler/graph/settings.h"
 #include "compiler/session/session.h"
 #include "compiler/support/files.h"
 #include "compiler/support/workers.h"
 #include "runtime/image/image.h"
+#include "runtime/studio/stored.h"
 #include "runtime/trace/model/trace_model.h"
 
 namespace graftal {
@@ -57,6 +60,9 @@ class StudioHome {
 
     virtual const Files& files() const = 0;
     virtual std::string root() const { return {}; } ///< LowerOptions::root
+    virtual std::uint64_t memory_bytes() const { return DetailOptions{}.memory_bytes; } ///< likewise of those
+    /// The bytes as zlib has them, for the way to the page; here without compression.
+    virtual std::string deflated(std::string_view bytes) const { return stored(bytes); }
     /// `threads`: 0 for as many as the home likes. Valid until the next call.
     virtual const Workers& workers(int threads) = 0;
     /// Gives a new session what it asks of textures, skies and foreign models.

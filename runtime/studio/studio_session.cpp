@@ -111,7 +111,8 @@ bool StudioSession::work(double budget_seconds) {
             tell_of_file();
             tell_of_engine();
             if (answer_next()) continue;
-            const auto cut_short = [&] { return clock_seconds() > end + (patience_ - 1) * budget_seconds; };
+            const double latest = clock_seconds() + patience_ * budget_seconds;
+            const auto cut_short = [&] { return clock_seconds() > latest; };
             if (stage_ == Stage::compile)
                 compile();
             else if (!thumbnails_.empty() && !draws_first())
@@ -175,6 +176,7 @@ bool StudioSession::prepare(ModelSession& model, StudioState& state, PreparedVie
     }
     StageOptions& stages = state.stages;
     stages.lower.root = home_.root();
+    stages.detail.memory_bytes = home_.memory_bytes();
     prepared.viewed = model.session->viewed(stages, compilation);
     if (outdated() || !prepared.viewed) return false;
     compilation.status =
@@ -253,8 +255,9 @@ void StudioSession::end_thumbnail(const std::string& error) {
     nlohmann::json message{{"type", "answer"}, {"id", thumbnail.id}};
     if (!error.empty()) message["error"] = error;
     for (const ShownTile& tile : thumbnail.tiles)
-        sink_.binary(tile_message(
-            {thumbnail.id, static_cast<std::uint32_t>(tile.pass), tile.tile, tile.block}, tile.rgb8));
+        sink_.binary(
+            tile_message({thumbnail.id, static_cast<std::uint32_t>(tile.pass), tile.tile, tile.block},
+                         home_.deflated(tile.rgb8)));
     send(message);
 }
 
@@ -270,7 +273,7 @@ void StudioSession::describe() {
 void StudioSession::send_tile(const ShownTile& tile) {
     if (outdated()) return;
     sink_.binary(tile_message({state_.number, static_cast<std::uint32_t>(tile.pass), tile.tile, tile.block},
-                              tile.rgb8));
+                              home_.deflated(tile.rgb8)));
 }
 
 /// Has another engine draw the state's picture.
@@ -426,7 +429,8 @@ void StudioSession::tell_of_file() {
     else if (!result.path.empty())
         message["path"] = result.path;
     else
-        sink_.binary(file_message(writing->id, result.name, result.contents));
+        sink_.binary(
+            file_message(writing->id, result.name.size(), home_.deflated(result.name + result.contents)));
     send(message);
 }
 

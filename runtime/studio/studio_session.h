@@ -45,7 +45,8 @@ class StudioSession {
     /// Notes a message. Work on a state before it ends soon; answers come from work().
     void hear(std::string_view message);
 
-    /// Works for about so many seconds. False when there is nothing to do until the next message.
+    /// Works for about so many seconds; the last piece of work may take as long again. False when there is
+    /// nothing to do until the next message.
     bool work(double budget_seconds);
 
     /// Ends all work soon, and for good.

@@ -4,13 +4,16 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include "compiler/import/importers.h"
+#include "compiler/support/check.h"
 #include "compiler/support/text_encoding.h"
 #include "runtime/export/export_model.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/render/file_film.h"
 #include "runtime/render/native_engine.h"
+#include "runtime/studio/example.h"
 #include "runtime/system/disk_files.h"
 #include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
@@ -20,27 +23,9 @@
 
 namespace graftal {
 
-namespace {
-
-constexpr const char* example_name = "crystal.rifs";
-constexpr const char* example_text = R"(let spread = 0.5
-
-rifs crystal {
-  map n { scale 1/2  translate <0,  spread, 0>  tint rgb <0.2, 0.5, 0.9> 0.5 }
-  map s { scale 1/2  translate <0, -spread, 0>  tint rgb <0.1, 0.2, 0.6> 0.5 }
-  map e { scale 1/2  translate < spread, 0, 0> }
-  map w { scale 1/2  translate <-spread, 0, 0> }
-  map f { scale 1/2  translate <0, 0,  spread>  tint rgb <1, 0.6, 0.1> 0.5 }
-  map b { scale 1/2  translate <0, 0, -spread> }
-  terminal sphere
-}
-)";
-
-} // namespace
-
 Status read_studio_model(const std::string& path, StudioModel& model) {
     if (path.empty()) {
-        model = {{example_name, example_text}, "."};
+        model = {example_model(), "."};
         return {};
     }
     std::string bytes;
@@ -61,6 +46,18 @@ std::vector<std::string> ProgramHome::formats() const {
     for (const ExportFormat& format : export_formats())
         endings.emplace_back(format.extension);
     return endings;
+}
+
+std::string ProgramHome::deflated(std::string_view bytes) const {
+    constexpr int fast = 1;
+    uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+    std::string packed(size, '\0');
+    const int done =
+        compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                  reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), fast);
+    GRAFTAL_CHECK(done == Z_OK, "studio: zlib has refused a message");
+    packed.resize(size);
+    return packed;
 }
 
 const Files& ProgramHome::files() const {

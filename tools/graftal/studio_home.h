@@ -30,6 +30,7 @@ class ProgramHome final : public StudioHome {
     OpenedModel opened() const override { return model_->opened; }
     std::vector<std::string> engines() const override;
     std::vector<std::string> formats() const override;
+    std::string deflated(std::string_view bytes) const override;
     const Files& files() const override;
     std::string root() const override { return model_->root; }
     const Workers& workers(int threads) override;

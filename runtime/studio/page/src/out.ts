@@ -1,5 +1,5 @@
 // Ways out: a picture of any size, files for other programs, the command line, a link.
-import { element } from './dom';
+import { by_id, element } from './dom';
 import { choices_of, fragment_of } from './link';
 import { inflate, type Choices, type SentFile } from './protocol';
 import type { Studio } from './studio';
@@ -11,6 +11,7 @@ export class Out {
   private readonly picture_kind = element('select', { 'aria-label': 'Kind of picture' },
     element('option', { value: '.png' }, 'PNG'), element('option', { value: '.exr' }, 'EXR'));
   private readonly format = element('select', { id: 'format' });
+  private readonly export_room = element('div', {});
   private readonly command = element('pre', { tabindex: 0, 'aria-label': 'Command line' });
   private readonly path = element('input', { type: 'text', id: 'path', placeholder: 'name.png', 'aria-label': 'Name of the picture file', spellcheck: 'false' });
 
@@ -29,6 +30,10 @@ export class Out {
     }, `${times}×`);
     const file = element('input', { type: 'file', class: 'unseen', tabindex: -1, 'aria-hidden': 'true', accept: '.lsys,.rifs,.inst' });
     file.onchange = () => void (file.files?.[0] && this.open_file(file.files[0]));
+    this.export_room.append(
+      element('h2', {}, 'For other programs'),
+      element('div', { class: 'line' }, element('label', { for: 'format' }, 'Format '), this.format,
+        this.button('save-export', 'Save file', () => this.write({ suffix: this.format.value }))));
     this.element.append(
       element('h2', {}, 'Text'),
       element('div', { class: 'line' },
@@ -36,14 +41,11 @@ export class Out {
         this.button('download-text', 'Download text', () => this.download_text()),
         this.button('open-file', 'Open a file', () => file.click()), file),
       element('h2', {}, 'Picture'),
-      element('div', { class: 'line' }, this.width, ' × ', this.height, size(1), size(2), size(4)),
-      element('div', { class: 'line' }, this.picture_kind, this.button('save-picture', 'Save picture', () => this.write(
-        { suffix: this.picture_kind.value, width: Number(this.width.value), height: Number(this.height.value) }))),
+      element('div', { class: 'line', id: 'picture-size' }, this.width, ' × ', this.height, size(1), size(2), size(4)),
+      element('div', { class: 'line' }, this.picture_kind, this.button('save-picture', 'Save picture', () => this.save_picture())),
       element('div', { class: 'line', id: 'at-home' }, this.path, this.button('save-path', 'Save beside the model', () => this.write(
         { path: this.path.value, width: Number(this.width.value), height: Number(this.height.value) }))),
-      element('h2', {}, 'For other programs'),
-      element('div', { class: 'line' }, element('label', { for: 'format' }, 'Format '), this.format,
-        this.button('save-export', 'Save file', () => this.write({ suffix: this.format.value }))),
+      this.export_room,
       element('h2', {}, 'Command line'),
       this.command,
       element('div', { class: 'line' }, this.button('copy-command', 'Copy', () => this.copy(this.command.textContent ?? '', 'The command line'))),
@@ -58,6 +60,9 @@ export class Out {
     this.format.replaceChildren(...(hello?.formats ?? []).map((format) => element('option', { value: format.startsWith('.') ? format : `.${format}` }, format.replace(/^\./, ''))));
     this.element.querySelector<HTMLElement>('#at-home')!.hidden = hello?.home !== 'program';
     this.element.querySelector<HTMLElement>('#save-text')!.hidden = hello?.home !== 'program';
+    this.element.querySelector<HTMLElement>('#picture-size')!.hidden = hello?.home !== 'program';
+    this.picture_kind.hidden = hello?.home !== 'program';
+    this.export_room.hidden = !hello?.formats.length;
     this.size(1);
   }
 
@@ -78,6 +83,15 @@ export class Out {
     else this.download_text();
   }
 
+  /** Has the program draw the picture at its size; without a program the one that is shown is saved. */
+  private async save_picture(): Promise<void> {
+    const size = { width: Number(this.width.value), height: Number(this.height.value) };
+    if (this.studio.hello?.home === 'program') return this.write({ suffix: this.picture_kind.value, ...size });
+    const shown = await new Promise<Blob | null>((resolve) => by_id<HTMLCanvasElement>('picture').toBlob(resolve));
+    const name = this.studio.history.now.name.replace(/^.*[\\/]/, '').replace(/\.\w+$/, '');
+    if (shown) this.give(`${name}.png`, new Uint8Array(await shown.arrayBuffer()));
+  }
+
   /** Opens a file of the person's: its text takes the place of the model. */
   async open_file(file: File): Promise<void> {
     if (file.size > 4_000_000) this.studio.say(`${file.name} is too large for a model: it has more than 4 MB.`);
@@ -92,7 +106,7 @@ export class Out {
   /** The address of this page with the model in it, without the secret that the program gave the page. */
   async copy_link(): Promise<void> {
     const elsewhere = document.querySelector<HTMLMetaElement>('meta[name="graftal-site"]')?.content;
-    const base = elsewhere ?? location.origin + '/';
+    const base = elsewhere ?? location.origin + location.pathname;
     await this.copy(base + (await fragment_of(this.studio.history.now)), 'The link');
   }
 

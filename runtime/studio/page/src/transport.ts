@@ -1,4 +1,5 @@
-// The two ways to a session: a WebSocket to the program, and messages posted to a worker.
+// The two ways to a session: a WebSocket to the program, and messages posted to workers (workers.ts).
+import { WorkerTransport } from './workers';
 
 export interface Transport {
   send(message: object): void;
@@ -9,19 +10,15 @@ export interface Transport {
   on_close: (why: string) => void;
 }
 
-class Silent {
+/** Connects again, after a pause that grows, for as long as the page is open. */
+export class SocketTransport implements Transport {
   on_message: Transport['on_message'] = () => {};
   on_open: Transport['on_open'] = () => {};
   on_close: Transport['on_close'] = () => {};
-}
-
-/** Connects again, after a pause that grows, for as long as the page is open. */
-export class SocketTransport extends Silent implements Transport {
   private socket: WebSocket | null = null;
   private pause_ms = 250;
 
   constructor(private readonly address: string) {
-    super();
     this.connect();
   }
 
@@ -44,22 +41,6 @@ export class SocketTransport extends Silent implements Transport {
       this.pause_ms = Math.min(5000, 2 * this.pause_ms);
     };
     this.socket = socket;
-  }
-}
-
-export class WorkerTransport extends Silent implements Transport {
-  private readonly worker: Worker;
-
-  constructor(address: string) {
-    super();
-    this.worker = new Worker(address, { type: 'module' });
-    this.worker.onmessage = ({ data }) => this.on_message(data);
-    this.worker.onerror = (event) => this.on_close(`The worker stopped: ${event.message}`);
-    queueMicrotask(() => this.on_open());
-  }
-
-  send(message: object): void {
-    this.worker.postMessage(message);
   }
 }
 

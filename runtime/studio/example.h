@@ -4,7 +4,7 @@
 
 namespace graftal {
 
-/// What a studio opens where nobody names a model.
+/// The model that a studio opens where nobody names one.
 OpenedModel example_model();
 
 } // namespace graftal

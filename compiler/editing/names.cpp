@@ -157,9 +157,12 @@ class Collector {
 
     // `.lsys`
 
-    void file(const LsysFile& tree) {
+    void file(const LsysFile& tree) { blocks(tree); }
+
+    /// Reads a file of blocks, in either language. A block may name those after it.
+    template<typename Tree> void blocks(const Tree& tree) {
         models(tree.uses);
-        for (const LsysBlock& block : tree.blocks)
+        for (const auto& block : tree.blocks)
             define(file_, NameKind::block, block.name);
         statements(file_, tree.statements);
         for (std::size_t i = 0; i < tree.blocks.size(); ++i) {
@@ -294,14 +297,7 @@ class Collector {
     // `.rifs`
 
     void file(const RifsFile& tree) {
-        models(tree.uses);
-        for (const RifsBlock& block : tree.blocks)
-            define(file_, NameKind::block, block.name);
-        statements(file_, tree.statements);
-        for (std::size_t i = 0; i < tree.blocks.size(); ++i) {
-            Scope scope{&file_, span_between(tree.blocks, i)};
-            block(scope, tree.blocks[i]);
-        }
+        blocks(tree);
         for (std::size_t i = 0; i < tree.orbits.size(); ++i) {
             define(file_, NameKind::block, tree.orbits[i].name);
             Scope scope{&file_, span_between(tree.orbits, i)};

@@ -122,15 +122,16 @@ nlohmann::json model_message(const StudioState& state, const LoweredModel& lower
         parameters.push_back(parameter_json(parameter, sources));
     const Box& box = viewed.model->bounds[viewed.model->graph.root].box;
     const std::optional<unsigned> levels = levels_of(analysed, state.stages.lower.steps);
-    return {{"type", "model"},
-            {"number", state.number},
-            {"parameters", std::move(parameters)},
-            {"camera",
-             camera_json(viewed.view.camera, distance_of(viewed, state.stages.view.zoom.zoom.has_value()))},
-            {"box", box_json(box)},
-            {"stats", nlohmann::json::parse(stats_json(analysed, levels, sources))},
-            {"maps", maps_json(state, analysed)},
-            {"digraphs", digraphs_json(state)}};
+    nlohmann::json message{
+        {"type", "model"},
+        {"number", state.number},
+        {"parameters", std::move(parameters)},
+        {"camera",
+         camera_json(viewed.view.camera, distance_of(viewed, state.stages.view.zoom.zoom.has_value()))},
+        {"box", box_json(box)},
+        {"stats", nlohmann::json::parse(stats_json(analysed, levels, sources))}};
+    add_maps(message, state, analysed);
+    return message;
 }
 
 } // namespace graftal

@@ -185,9 +185,9 @@ Json answer_about_text(const std::string& what, const Json& ask, const AskedText
     return TextAsk(ask, asked).answer(what);
 }
 
-Json maps_json(const StudioState& state, const AnalysedModel& model) {
-    Json maps = Json::array();
-    if (state.text->find('\r') != std::string::npos) return maps;
+void add_maps(Json& message, const StudioState& state, const AnalysedModel& model) {
+    Json &maps = message["maps"] = Json::array(), &digraphs = message["digraphs"] = Json::array();
+    if (state.text->find('\r') != std::string::npos) return;
     const Document document(state.name, *state.text);
     const TextPositions positions(document.text());
     for (const EditableMap& map : maps_of(document, state.stages.lower, &model)) {
@@ -202,15 +202,8 @@ Json maps_json(const StudioState& state, const AnalysedModel& model) {
         if (!map.movable) json["why"] = map.why;
         maps.push_back(std::move(json));
     }
-    return maps;
-}
-
-Json digraphs_json(const StudioState& state) {
-    Json list = Json::array();
-    if (state.text->find('\r') != std::string::npos) return list;
-    for (const Digraph& digraph : digraphs_of(Document(state.name, *state.text)))
-        list.push_back({{"block", digraph.block}, {"maps", digraph.maps}, {"edges", digraph.edges}});
-    return list;
+    for (const Digraph& digraph : digraphs_of(document))
+        digraphs.push_back({{"block", digraph.block}, {"maps", digraph.maps}, {"edges", digraph.edges}});
 }
 
 } // namespace graftal

@@ -26,11 +26,7 @@ struct AskedText {
 /// OutOfWork.
 nlohmann::json answer_about_text(const std::string& what, const nlohmann::json& ask, const AskedText& asked);
 
-/// The maps of the message `model`.
-nlohmann::json maps_json(const StudioState& state, const AnalysedModel& model);
-
-/// Which maps may follow which, of each block that says so (`model`, docs/studio.md). Requires a state with a
-/// text.
-nlohmann::json digraphs_json(const StudioState& state);
+/// Adds `maps` and `digraphs` to the message `model` (docs/studio.md). Requires a state with a text.
+void add_maps(nlohmann::json& message, const StudioState& state, const AnalysedModel& model);
 
 } // namespace graftal

@@ -189,20 +189,20 @@ void weigh_by_reach(CutGraph& cut) {
 
 void mark_textured(CutGraph& cut) {
     const std::vector<NodeId> order = masters_first(cut);
-    const auto has_picture = [&](const std::optional<MaterialId>& material) {
+    const auto is_painted = [&](const std::optional<MaterialId>& material) {
         return material && cut.materials[*material].is_painted();
     };
-    const auto shows_picture = [&](const CutEdge& edge) {
-        return cut.nodes[edge.child].textured || has_picture(edge.material);
+    const auto shows_paint = [&](const CutEdge& edge) {
+        return cut.nodes[edge.child].textured || is_painted(edge.material);
     };
     for (bool changed = true; changed;) {
         changed = false;
         for (const NodeId id : order) {
             CutNode& node = cut.nodes[id];
             if (node.textured) continue;
-            node.textured = (node.cell && std::ranges::any_of(node.cell->source->materials, has_picture)) ||
-                            std::ranges::any_of(node.edges, shows_picture) ||
-                            std::ranges::any_of(node.stop_edges, shows_picture);
+            node.textured = (node.cell && std::ranges::any_of(node.cell->source->materials, is_painted)) ||
+                            std::ranges::any_of(node.edges, shows_paint) ||
+                            std::ranges::any_of(node.stop_edges, shows_paint);
             changed = changed || node.textured;
         }
     }

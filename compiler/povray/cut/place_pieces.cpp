@@ -74,7 +74,7 @@ class Placing {
     void visit(const Piece& piece) {
         const CutNode& node = cut_.nodes[piece.node];
         if (!node.unbounded && projection_.drops(world_ball(cut_, piece))) return;
-        if (node.primitive && !node.unbounded && piece.material && has_picture(*piece.material))
+        if (node.primitive && !node.unbounded && piece.material && is_painted(*piece.material))
             return place_textured(*node.primitive, piece);
         if (node.primitive)
             return place_primitive(*node.primitive, piece.world_from_node, piece, piece.inherited);
@@ -278,7 +278,7 @@ class Placing {
         return true;
     }
 
-    bool has_picture(MaterialId material) const { return cut_.materials[material].is_painted(); }
+    bool is_painted(MaterialId material) const { return cut_.materials[material].is_painted(); }
 
     void note_finest(const Ball& ball) {
         if (projection_.culls() && projection_.sees(ball))
@@ -286,7 +286,7 @@ class Placing {
     }
 
     std::optional<PainterKey> own_painter(const Piece& piece) const {
-        if (!cut_.nodes[piece.node].textured && !(piece.material && has_picture(*piece.material)))
+        if (!cut_.nodes[piece.node].textured && !(piece.material && is_painted(*piece.material)))
             return std::nullopt;
         return PainterKey{0, symmetry_.pair[piece.node], as_array(piece.inherited)};
     }

@@ -194,7 +194,7 @@ TEST(Settings, APatternHasLayersAndColours) {
     EXPECT_EQ(moss.layers, rock.layers);
     EXPECT_NEAR(moss.high.g, 1.35 * 0.2, 1e-12) << "colours go with the material's";
     EXPECT_FALSE(material_of(model.graph, "bare")->pattern);
-    // As it is written, it is read.
+    // The text that graftal writes reads back equal.
     SourceMap sources;
     Diagnostics diagnostics;
     const auto again = lower_text("again.inst", print(*model.graph), {}, sources, diagnostics).graph;

@@ -128,7 +128,7 @@ TEST(StudioSession, ANewStateEndsTheWorkOnTheOneBefore) {
     Page page;
     page.show(
         {{"text", heavy}, {"name", "heavy.rifs"}, {"quality", "best"}, {"width", 640}, {"height", 360}});
-    // As soon as something is seen, the page goes on.
+    // The page goes on when something is seen.
     page.on_message = [&] {
         if (page.tiles.size() != 1) return;
         page.on_message = {};

@@ -456,8 +456,7 @@ class Collector {
     std::vector<NamedThing> settled() {
         const auto tidy = [](std::vector<Span>& spans) {
             std::ranges::sort(spans, {}, &Span::begin);
-            const auto again = std::ranges::unique(spans);
-            spans.erase(again.begin(), again.end());
+            spans.erase(std::unique(spans.begin(), spans.end()), spans.end());
         };
         const auto first_place = [](const NamedThing& thing) {
             const std::uint32_t used = thing.uses.empty() ? UINT32_MAX : thing.uses.front().begin;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/detail/coarser.h"
+#include "compiler/detail/work.h"
 #include "compiler/session/stages.h"
 #include "runtime/fit/fit_picture.h"
 #include "runtime/fit/samplings.h"
@@ -129,7 +130,9 @@ struct Draft {
 
 Draft first_draft(const TraceModel& model, const Sampling& finest, double sample_seconds) {
     constexpr double soon = 0.05, too_late = 0.3; // seconds of one processor
-    constexpr double coarser = 8;                 // of errors: half of the widest block
+    // Errors grow to half of the widest block, and on where finer ones mean more and larger shells.
+    constexpr double coarser_parts = 8, coarser_shells = 64;
+    constexpr double share_for_shells = 0.1; // of the work
     constexpr std::uint64_t most_visits = 1024;
     Draft draft{looks_before(finest, sample_seconds, soon), nullptr};
     if (draft.looks.empty()) return draft;
@@ -138,11 +141,15 @@ Draft first_draft(const TraceModel& model, const Sampling& finest, double sample
     // Nobody knows how many shells its rays will meet, and they belong to the price of the model itself.
     if (!model.options.culls() || !(is_late || model.has_shells)) return draft;
     DetailOptions options = model.options;
+    const double coarser = model.has_shells ? coarser_shells : coarser_parts;
     options.error_px *= coarser;
     if (options.error_world) *options.error_world *= coarser;
     draft.rough =
         std::make_unique<TraceModel>(model.shared, model.view, options, model.textures, model.ground);
     draft.rough->most_visits = std::min(model.most_visits, most_visits);
+    // Nothing takes this look from the work of the picture: beyond a share of it, shells are left out.
+    draft.rough->meshes.make_until(
+        static_cast<std::uint64_t>(share_for_shells * options.work_seconds * WorkRates::shell_points));
     return draft;
 }
 

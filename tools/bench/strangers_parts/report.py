@@ -70,6 +70,7 @@ def page(rows, campaign, root, limits, most=60):
     found = sorted((row for row in rows if row['findings']), key=lambda row: row['model'])
     refused = [row for row in rows if row['code'] == 1 and row['command'] != 'check']
     foretold = [row for row in rows if row.get('foretold')]
+    slowed = [row for row in rows if row.get('slowness') and not row['findings']]
     blank = [row for row in rows if row.get('blank')]
     models = len({row['model'] for row in rows})
     accepted = sum(row['command'] == 'check' and row['code'] == 0 for row in rows)
@@ -92,6 +93,9 @@ def page(rows, campaign, root, limits, most=60):
     if found:
         lines += [f'`tools/bench/strangers --seed {campaign["seed"]} --only MODEL --out FOLDER` makes one again.', '',
                   *listed(found, most)]
+    if slowed:
+        said = ', '.join(f'{row["model"]} ({row["cpu"]:.1f} s, {row["slowness"]})' for row in slowed)
+        lines += ['', 'Over by the clock alone, while a reference picture took so many times its work, too: ' + said + '.']
     if foretold:
         said = ', '.join(f'{row["model"]} ({row["foretold"]} s)' for row in foretold)
         lines += ['', f'{len(foretold)} renders were stopped that graftal had said beforehand would take longer: {said}.']

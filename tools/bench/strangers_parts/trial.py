@@ -3,6 +3,7 @@ import json
 import os
 import re
 import shutil
+from pathlib import Path
 
 import picture
 from limited import observe
@@ -18,6 +19,8 @@ COMMANDS = {
 }
 
 START_S = 2   # that a command may take besides its --work
+REFERENCE = Path(__file__).resolve().parents[3] / 'scenes/showpieces/toy_wood.inst'
+REFERENCE_WORK_S = 3
 
 
 def command_line(program, name, model, size=None):
@@ -50,6 +53,12 @@ def attempt(program, name, folder, limits, size=None):
     foretold = re.search(r'(?:will take|, in) about (\d+) seconds', ' '.join(said))
     work_s = max(model['work'], int(foretold[1]) if foretold else 0)
     row['findings'] = judged(row, ended, limits, work_s)
+    if row['findings'] in (['time'], ['work']) and row['cpu'] <= limits.report_s:
+        # A machine with other loads makes seconds longer: those of a reference picture say by how much.
+        slowness = reference_slowness(program, folder, limits)
+        quiet = {**row, 'cpu': row['cpu'] / slowness}
+        row['findings'] = judged(quiet, ended, limits, work_s)
+        row['slowness'] = round(slowness, 2)
     if row['findings'] == ['time'] and work_s > limits.report_s / 2:
         row['findings'], row['foretold'] = [], work_s
     row['findings'] += leftovers(name, row, out, temporary)
@@ -60,6 +69,14 @@ def attempt(program, name, folder, limits, size=None):
         path = folder / used
         shutil.rmtree(path) if path.is_dir() else path.unlink()
     return row
+
+
+def reference_slowness(program, folder, limits):
+    """Seconds of a processor that a second of work takes at this moment, by a scene that keeps to its work; at least 1."""
+    line = [program, 'render', str(REFERENCE), '--engine', 'native', '--work', str(REFERENCE_WORK_S), '-o', 'reference.png']
+    ended = observe(line, limits, folder / 'stdout', folder / 'stderr', folder)
+    (folder / 'reference.png').unlink(missing_ok=True)
+    return max(1.0, ended.usage.cpu / REFERENCE_WORK_S) if ended.code == 0 else 1.0
 
 
 def judged(row, ended, limits, work_s):

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -36,6 +37,30 @@ std::uint32_t add_texture(const Texture& texture, FlatModel& flat) {
     return first;
 }
 
+/// Where a pattern begins among the texels, as kernel/pattern.glsl reads it.
+std::uint32_t add_pattern(const SolidPattern& pattern, FlatModel& flat) {
+    const auto first = static_cast<std::uint32_t>(flat.texels.size());
+    const auto add = [&](std::initializer_list<double> numbers) {
+        for (const double number : numbers)
+            flat.texels.push_back(static_cast<float>(number));
+    };
+    add({static_cast<double>(pattern.layers.size()), pattern.bump * relief_depth});
+    add({pattern.low.r, pattern.low.g, pattern.low.b, pattern.high.r, pattern.high.g, pattern.high.b});
+    for (const PatternLayer& layer : pattern.layers)
+        add({static_cast<double>(layer.kind), static_cast<double>(layer.octaves), layer.warp, layer.scale,
+             layer.of_world ? 1.0 : 0.0, layer.stretch.x, layer.stretch.y, layer.stretch.z, layer.share});
+    return first;
+}
+
+void add_waves(FlatModel& flat) {
+    static_assert(pattern_levels == PATTERN_LEVELS && pattern_waves == PATTERN_WAVES);
+    flat.scene.tables.z = static_cast<std::uint32_t>(flat.texels.size());
+    for (const auto& level : pattern_table())
+        for (const PatternWave& wave : level)
+            for (const double number : {wave.direction.x, wave.direction.y, wave.direction.z, wave.phase})
+                flat.texels.push_back(static_cast<float>(number));
+}
+
 void add_material(const Material& material, const Texture* texture, FlatModel& flat) {
     const Interior interior = interior_of(material);
     const auto add = [&](double x, double y, double z, double w) {
@@ -44,7 +69,9 @@ void add_material(const Material& material, const Texture* texture, FlatModel& f
     flat.materials.push_back(flat_four(material.rgb, material.ambient));
     add(material.diffuse, material.specular, material.roughness, material.reflection);
     add(material.translucency, material.emission, material.metallic, material.transparency);
-    add(material.filter, material.ior, material.blur, 0);
+    const std::uint32_t pattern = material.pattern ? add_pattern(material.pattern, flat) : NONE;
+    flat.patterned = flat.patterned || material.pattern;
+    flat.materials.emplace_back(material.filter, material.ior, material.blur, flat_bits(pattern));
     flat.materials.push_back(flat_four(interior.absorbed, interior.ior));
     if (texture)
         flat.materials.emplace_back(flat_bits(add_texture(*texture, flat)),
@@ -139,6 +166,7 @@ void add_camera(const FlatRequest& request, Scene& scene) {
     const double half_width =
         camera.orthographic ? 0.5 * camera.width : std::tan(camera.angle_deg * std::numbers::pi / 360);
     const double shape = static_cast<double>(view.size.height) / view.size.width;
+    scene.eye = flat_four(camera.location);
     scene.right = flat_four(camera.right, half_width);
     scene.up = flat_four(camera.up, half_width * shape);
     scene.direction = flat_four(camera.direction, camera.orthographic ? 1 : 0);
@@ -216,6 +244,7 @@ void add_light(const FlatRequest& request, FlatModel& flat) {
     }
     scene.ambient.w = static_cast<float>(view.film.exposure);
     scene.looks = {view.film.soft ? 1 : 0, opaque ? 1 : 0, 0, 0};
+    if (flat.patterned) add_waves(flat);
     scene.tables.x = static_cast<std::uint32_t>(flat.texels.size());
     const PixelFilter filter;
     static_assert(PixelFilter::steps == FILTER_STEPS);

@@ -133,8 +133,15 @@ class Flattener {
                                              proxy_from_frame.linear[2][row]},
                                             proxy_from_frame.translation[row]));
         flat_.nodes.push_back(of_paint(node.mean));
-        flat_.nodes.push_back(of_paint(node.proxy));
+        flat_.nodes.push_back(node.primitive == flat_none ? of_paint(node.proxy)
+                                                          : extents(graph_.primitives[node.primitive]));
         flat_.nodes.emplace_back(flat_bits(material_number(node.finish)), 0.0f, shape, inner_radius);
+    }
+
+    /// Half of a primitive's extents, and 1 if it has bounds.
+    static glm::vec4 extents(const Primitive& primitive) {
+        const PrimitiveTraits& traits = traits_of(primitive);
+        return traits.bounded ? flat_four(0.5 * traits.box(primitive).size(), 1) : glm::vec4(0);
     }
 
     std::uint32_t tree_of(std::uint32_t first, std::uint32_t count) {
@@ -181,10 +188,6 @@ class Flattener {
 /// Parts of the model that no array of the kernel holds.
 std::string lack(const FlatRequest& request) {
     if (request.textures.of_ground) return "a picture on the ground";
-    const auto has_pattern = [](const Material& material) { return bool(material.pattern); };
-    if (std::ranges::any_of(request.prepared.cut.materials, has_pattern) ||
-        (request.view.ground && has_pattern(request.view.ground->material)))
-        return "a solid pattern";
     for (const CutNode& node : request.prepared.cut.nodes) {
         if (node.sealed) return "a singular map";
     }

@@ -28,6 +28,7 @@ struct FlatModel {
     std::vector<float> texels;
     std::vector<std::uint32_t> source; ///< by node: that of the prepared graph
     bool stretched = false;            ///< some map of an object scales unevenly
+    bool patterned = false;            ///< some material has a solid pattern
     kernel_layout::Scene scene{};
 
     std::uint64_t bytes() const;

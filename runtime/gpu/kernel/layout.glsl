@@ -25,7 +25,7 @@
 #define NODE_FACTS 1u   // cut_detail (0: never cut), flags, tree of its parts, tree of what is drawn where it is cut
 #define NODE_PROXY 2u   // three rows of proxy_from_node
 #define NODE_MEAN 5u    // the mean colour: what is fixed, and how much is open
-#define NODE_STANDIN 6u // likewise, of its proxy
+#define NODE_STANDIN 6u // likewise, of its proxy; of a primitive half of its extents, and w: 1 if it is bounded
 #define NODE_LOOK 7u    // the proxy's material, nothing, the radius at the end of what tapers, of a primitive the
                         // radius of the largest ball in it
 
@@ -52,8 +52,8 @@
 // normals.
 #define TRIANGLE_SIZE 6u
 
-// materials[]: see material_of() in light.glsl. Last its picture: the first of its texels in texels[] or NONE, its
-// width and height, and how often it goes round.
+// materials[]: see material_of() in light.glsl. In the fourth, w: its pattern in texels[] (pattern.glsl) or NONE. Last
+// its picture: the first of its texels in texels[] or NONE, its width and height, and how often it goes round.
 #define MATERIAL_SIZE 6u
 
 struct Lamp {
@@ -86,12 +86,17 @@ struct Scene {
     uvec4 counts;  // lamps, root's box, root's steps, bounces
     uvec4 visits;  // most of a ray, more, ground's material, catcher's material
     uvec4 looks;    // 1 for a soft film, 1 where all is opaque
-    uvec4 tables; // the pixel filter's in texels[]; 1 if some texel of a surface is clear
+    uvec4 tables; // the pixel filter's in texels[]; 1 if some texel of a surface is clear; patterns' waves in texels[]
+    vec4 eye;     // in the world of the model
     Lamp lamps[MOST_LAMPS];
 };
 
 // Entries of the pixel filter's table, less one.
 #define FILTER_STEPS 256
+
+// Waves of solid patterns (compiler/graph/pattern.h): so many a level.
+#define PATTERN_LEVELS 16
+#define PATTERN_WAVES 17u
 
 // Kinds of the sky's light.
 #define LIGHT_NONE 0

@@ -128,6 +128,8 @@ float least_distance(vec3 point, float pixels) {
     return max(pixels * pixel, 4e-7f * distance);
 }
 
+#include "runtime/gpu/kernel/pattern.glsl"
+
 bool meet_level(float height, vec3 o, vec3 d, float least, float most, OUT(float) t) {
     t = (height - o.y) / d.y;
     return abs(d.y) >= LEAST_COSINE && t > least && t < most;
@@ -150,15 +152,18 @@ void meet_level_at(float t, float height, uint material, INOUT(Hit) hit) {
     hit.levels = 0u;
     hit.is_level = true;
     hit.level = height;
+    hit.pattern_size = 1.0f;
+    hit.tint = vec4(0.0f, 0.0f, 0.0f, 1.0f);
 }
 
 /// walk(), and the ground.
 bool meet_first(vec3 o, vec3 d, float least, float most, bool any, INOUT(Hit) hit) {
     const bool found = walk(o, d, least, most, any, hit);
     float t;
-    if (!(scene.ground.y > 0.0f && meet_level(scene.ground.x, o, d, least, found ? hit.t : most, t))) return found;
-    meet_level_at(t, scene.ground.x, scene.visits.z, hit);
-    return true;
+    const bool ground = scene.ground.y > 0.0f && meet_level(scene.ground.x, o, d, least, found ? hit.t : most, t);
+    if (ground) meet_level_at(t, scene.ground.x, scene.visits.z, hit);
+    if (PATTERNS && !any && (found || ground)) show_pattern(o, d, hit);
+    return found || ground;
 }
 
 void share_light(Inside inside, INOUT(Point) point) {

@@ -28,6 +28,7 @@ layout(constant_id = 1) const bool AOVS = false; // in place of light
 layout(constant_id = 2) const int MOST_SPACES = 2; // as many as frames where some map of an object scales unevenly
 const bool STRETCHED = MOST_SPACES > 2;
 layout(constant_id = 3) const bool FAINTS = false; // sets without area are drawn wider than they are
+layout(constant_id = 4) const bool PATTERNS = false; // some material has one
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly restrict buffer Boxes { vec4 all_boxes[]; };

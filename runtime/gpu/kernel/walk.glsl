@@ -12,6 +12,8 @@ struct Hit {
     uint levels;   // that the way has used up
     bool is_level; // it lies exactly at this height
     float level;
+    float pattern_size; // of the part, for a pattern of its material; 0: shows none
+    vec4 tint;          // in front of its own colour, with the share that is open to that
 };
 
 /// A place on the way, and the ray there: origin + (t - base) / unit * direction.
@@ -241,6 +243,18 @@ void look_along(int last, uint part, bool is_proxy, Site site, INOUT(Hit) hit) {
         inherited = xyz_of(texel_of(hit.material, site, looks(part * LOOK_SIZE + 1u).x));
     }
     hit.rgb = xyz_of(tint) + tint.w * inherited;
+    hit.tint = tint;
+}
+
+/// pattern_size() of a primitive beyond the way to frame `at`, as long as part_size() says.
+float pattern_size_of(int at, uint part) {
+    const uint first = part * PART_SIZE;
+    const vec4 extent = nodes(bits_of(parts(first + 3u)).y * NODE_SIZE + NODE_STANDIN);
+    if (extent.w == 0.0f) return 1.0f;
+    const mat3 map = to_world(at, xyz_of(parts(first)), xyz_of(parts(first + 1u)), xyz_of(parts(first + 2u)));
+    const float a = extent.x * length(map[0]), b = extent.y * length(map[1]), c = extent.z * length(map[2]);
+    const float middle = max(min(a, b), min(max(a, b), c));
+    return middle > 0.0f && middle < FAR ? exp2(0.5f * floor(2.0f * log2(middle) + 0.5f)) : 1.0f;
 }
 
 /// The limit's normal where the proxy of a frame's node is met (limit_normal() of runtime/trace).
@@ -270,6 +284,9 @@ vec3 limit_normal(int last, float t, vec3 normal) {
 void take_hit(int last, uint part, bool is_proxy, vec3 normal, Site site, INOUT(Hit) hit) {
     hit.is_level = false;
     look_along(last, part, is_proxy, site, hit);
+    hit.pattern_size = 0.0f;
+    if (!is_proxy && bits_of(materials(hit.material * MATERIAL_SIZE + 3u)).w != NONE)
+        hit.pattern_size = pattern_size_of(last, part);
     vec3 n = normal;
     if (is_proxy) {
         n = limit_normal(last, hit.t, normal);

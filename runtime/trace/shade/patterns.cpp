@@ -1,7 +1,5 @@
 #include "runtime/trace/shade/patterns.h"
 
-#include <cmath>
-
 #include "runtime/trace/shade/formulas.h"
 
 namespace graftal {
@@ -11,9 +9,8 @@ namespace formulas {
 namespace {
 
 void pattern_wave(int level, int number, vec3& direction, double& phase) {
-    const int of_table = ((level % pattern_levels) + pattern_levels) % pattern_levels;
-    const PatternWave& wave =
-        pattern_table()[static_cast<std::size_t>(of_table)][static_cast<std::size_t>(number)];
+    const auto of_table = static_cast<std::size_t>(level & (pattern_levels - 1));
+    const PatternWave& wave = pattern_table()[of_table][static_cast<std::size_t>(number)];
     direction = wave.direction;
     phase = wave.phase;
 }
@@ -39,11 +36,7 @@ PatternValue pattern_at(const SolidPattern& pattern, double size, double footpri
 }
 
 Vec3 bumped(Vec3 normal, Vec3 relief, double bump, Vec3 ray_direction) {
-    constexpr double least = 0.02; // of what is seen
-    Vec3 tilted = glm::normalize(normal - bump * relief);
-    const double seen = -glm::dot(tilted, ray_direction);
-    if (seen < least) tilted = glm::normalize(tilted + (seen - least) * ray_direction);
-    return std::isfinite(tilted.x) ? tilted : normal;
+    return formulas::pattern_normal(normal, bump * relief, ray_direction);
 }
 
 } // namespace graftal

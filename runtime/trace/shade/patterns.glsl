@@ -137,3 +137,13 @@ FORMULA real pattern_layer(int kind, int octaves, real warp, real wavelength, re
     slope *= REAL(0.5) * root * root * root;
     return REAL(0.5) + REAL(0.5) * sum * root;
 }
+
+/// The unit normal of a surface with this relief, a gradient, as POV-Ray has it (normal.cpp, Perturb_Normal).
+/// `normal`: of unit length, to the side from where a ray of this unit direction comes; the result is, too.
+FORMULA vec3 pattern_normal(vec3 normal, vec3 relief, vec3 ray_direction) {
+    const real least = REAL(0.02); // of what is seen
+    vec3 tilted = normalize(normal - relief);
+    const real seen = -dot(tilted, ray_direction);
+    if (seen < least) tilted = normalize(tilted + (seen - least) * ray_direction);
+    return abs(tilted.x) <= REAL(2) ? tilted : normal; // also where it is not a number
+}

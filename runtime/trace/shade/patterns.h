@@ -15,8 +15,7 @@ struct PatternValue {
 /// Requires a pattern with layers.
 PatternValue pattern_at(const SolidPattern& pattern, double size, double footprint, Vec3 world);
 
-/// The unit normal of the surface with its relief, as POV-Ray has it (normal.cpp, Perturb_Normal). `normal`:
-/// of unit length, to the side from where the ray of this direction comes; the result is, too.
+/// pattern_normal() of patterns.glsl where the relief is `bump` times as deep.
 Vec3 bumped(Vec3 normal, Vec3 relief, double bump, Vec3 ray_direction);
 
 } // namespace graftal

@@ -33,7 +33,7 @@ using kernel_layout::Scene;
 inline constexpr float PI = 3.14159265358979f;
 inline constexpr float FAR = 1e30f;
 inline constexpr int MOST_FRAMES = 64, MOST_LATER = 5 * MOST_FRAMES;
-inline thread_local bool STRETCHED = false, FAINTS = false;
+inline thread_local bool STRETCHED = false, FAINTS = false, PATTERNS = false;
 
 inline thread_local const FlatModel* model = nullptr;
 inline thread_local Scene scene;
@@ -44,6 +44,7 @@ inline void use(const FlatModel& flat) {
     scene = flat.scene;
     STRETCHED = flat.stretched;
     FAINTS = flat.scene.widths.z > 0;
+    PATTERNS = flat.patterned;
 }
 
 inline uint min_uint(uint a, uint b) {

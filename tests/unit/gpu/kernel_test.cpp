@@ -76,8 +76,8 @@ Comparison compare(const TraceModel& model, int rays, std::uint32_t seed) {
         SurfaceHit native;
         const bool met = traversal.closest(ray, {}, native);
         kernel::Hit hit{};
-        const bool found = kernel::walk(glm::vec3(ray.origin - model.view.camera.location),
-                                        glm::vec3(ray.direction), 0, kernel::FAR, false, hit);
+        const bool found = kernel::meet_first(glm::vec3(ray.origin - model.view.camera.location),
+                                              glm::vec3(ray.direction), 0, kernel::FAR, false, hit);
         ++result.rays;
         result.hits += met;
         if (met != found || (met && std::abs(hit.t - native.t) > 2e-4 * native.t)) {
@@ -180,6 +180,33 @@ TEST(GpuKernel, PlanesAloneAreDrawn) {
     const Comparison seen = compare(*test::traced(graph, {}), 1000, 5);
     EXPECT_GT(seen.hits, 300);
     EXPECT_EQ(seen.differ, 0);
+}
+
+/// Layers of all kinds, of parts and of the world, on parts that are stretched.
+TEST(GpuKernel, ShowsPatterns) {
+    Graph graph = turned_parts();
+    SolidPattern pattern;
+    pattern.low = Rgb(0.9, 0.1, 0.1);
+    pattern.high = Rgb(0.1, 0.1, 0.9);
+    pattern.bump = 0.7;
+    for (const PatternKind kind : {PatternKind::noise, PatternKind::ridges, PatternKind::cells,
+                                   PatternKind::bands, PatternKind::rings}) {
+        const bool of_world = kind == PatternKind::bands;
+        pattern.layers = {
+            {.kind = kind, .scale = 0.7, .of_world = of_world, .stretch = {1, 2, 0.7}, .warp = 0.5},
+            {.kind = PatternKind::noise, .scale = 0.3, .octaves = 2, .share = 0.4}};
+        Material material;
+        material.name = "stone";
+        material.rgb = Rgb(0.2, 0.8, 0.3);
+        material.pattern = pattern;
+        graph.materials = {material};
+        graph.objects[graph.root].instances.front().material = 0;
+        const auto model = test::traced(graph, {});
+        const Comparison seen = compare(*model, 6000, 8);
+        EXPECT_GT(seen.hits, 100);
+        EXPECT_LE(seen.differ, 4);
+        EXPECT_LT(seen.colour, 0.02);
+    }
 }
 
 TEST(GpuKernel, SaysWhatItCannotDraw) {

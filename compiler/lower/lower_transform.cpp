@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/lower/point_maps.h"
 #include "compiler/primitives/primitive.h"
 #include "compiler/support/hue.h"
 #include "compiler/support/number.h"
@@ -18,6 +19,9 @@ namespace graftal {
 namespace {
 
 using LineKind = TransformLine::Kind;
+
+/// Those of a line, as many as it has, and zeros.
+using Numbers = std::array<double, 24>;
 
 template<std::size_t count>
 std::optional<std::array<double, count>>
@@ -98,13 +102,13 @@ double geometric_mean(double a, double b) {
     return std::sqrt(std::abs(a)) * std::sqrt(std::abs(b));
 }
 
-Vec3 scale_factors(const std::array<double, 12>& n, std::size_t count) {
+Vec3 scale_factors(const Numbers& n, std::size_t count) {
     if (count == 1) return Vec3(n[0]);
     if (count == 2) return {n[0], n[1], geometric_mean(n[0], n[1])};
     return {n[0], n[1], n[2]};
 }
 
-Affine from_rows(const std::array<double, 12>& n) {
+Affine from_rows(const Numbers& n) {
     Affine result;
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column)
@@ -120,8 +124,7 @@ Affine shear(std::string_view axes, double factor) {
     return result;
 }
 
-std::optional<Affine> rotation(const TransformLine& line, const std::array<double, 12>& n,
-                               Diagnostics& diagnostics) {
+std::optional<Affine> rotation(const TransformLine& line, const Numbers& n, Diagnostics& diagnostics) {
     if (!line.axes.empty()) return Affine::rotate(axis_vector(line.axes[0]), n[0]);
     const Vec3 axis(n[0], n[1], n[2]);
     // The largest component first, so that neither tiny nor huge axes leave the range of doubles.
@@ -129,6 +132,22 @@ std::optional<Affine> rotation(const TransformLine& line, const std::array<doubl
     if (largest > 0) return Affine::rotate(axis / largest, n[3]);
     diagnostics.error(line.span, "the axis of this rotation has no direction");
     return std::nullopt;
+}
+
+std::optional<Affine> of_points(const TransformLine& line, const Numbers& n, Diagnostics& diagnostics) {
+    const std::size_t count = line.numbers.size(), dimensions = point_dimensions(count);
+    std::vector<Vec3> at;
+    for (std::size_t i = 0; i < count; i += dimensions)
+        at.emplace_back(n[i], n[i + 1], dimensions == 3 ? n[i + 2] : 0);
+    const std::span<const Vec3> points(at);
+    const std::optional<Affine> map = map_by_points(points.first(at.size() / 2), points.last(at.size() / 2));
+    if (!map)
+        diagnostics
+            .error(line.span, dimensions == 3  ? "these four points lie in one plane"
+                              : at.size() == 4 ? "these two points are one"
+                                               : "these three points lie on one line")
+            .with_hint("the points before '->' must span the space that the map is of");
+    return map;
 }
 
 bool check_map(const Affine& map, bool projection, Span span, std::string_view what,
@@ -195,7 +214,7 @@ std::optional<Tint> lower_tint(const std::vector<Expression>& values, const Envi
 
 std::optional<Affine> lower_transform(const TransformLine& line, const Environment& environment,
                                       Diagnostics& diagnostics, const ChanceDraws& draws) {
-    const auto n = evaluate_all<12>(line.numbers, environment, diagnostics, draws);
+    const auto n = evaluate_all<24>(line.numbers, environment, diagnostics, draws);
     if (!n) return std::nullopt;
     std::optional<Affine> map;
     switch (line.kind) {
@@ -214,6 +233,9 @@ std::optional<Affine> lower_transform(const TransformLine& line, const Environme
     case LineKind::matrix:
     case LineKind::projection:
         map = from_rows(*n);
+        break;
+    case LineKind::points:
+        map = of_points(line, *n, diagnostics);
         break;
     }
     const std::string_view keyword = transform_keywords[static_cast<std::size_t>(line.kind)];

@@ -35,14 +35,16 @@ struct RifsPart {
 };
 
 /// The form of a map's numbers: a transform list, or one of the rows of `codes`.
-enum class RifsForm : std::uint8_t { transforms, codes_2d, codes_polar, codes_3d };
+enum class RifsForm : std::uint8_t { transforms, codes_2d, codes_polar, codes_3d, codes_barycentric };
 
 struct RifsMap {
     Name name;                ///< of a row without a label: an empty text, at the row
     std::uint32_t number = 0; ///< in its block, from 1: a row without a label is named by it
     RifsForm form = RifsForm::transforms;
     std::vector<TransformLine> transforms;
-    std::vector<Expression> codes; ///< without the probability: as many as the form has
+    /// Without the probability: as many as the form has. Those of codes_barycentric are the weights of each
+    /// image and then the control points of the block.
+    std::vector<Expression> codes;
     std::optional<Expression> probability;
     RifsLook look;
     std::optional<Name> from; ///< the block whose attractor this map takes
@@ -91,7 +93,9 @@ struct RifsBlock {
     bool is_main = false;
     std::vector<RifsMap> maps;
     std::optional<RifsFollow> follow;
-    std::vector<Name> start; ///< empty: all maps
+    std::vector<Name> start;         ///< empty: all maps
+    std::vector<Expression> control; ///< coordinates of three points of the plane or four of space, or none
+    Span control_span;
     std::vector<RifsPart> condense;
     std::optional<RifsPart> terminal;
     bool broken = false; ///< an error lost a part of it

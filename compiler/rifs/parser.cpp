@@ -17,8 +17,8 @@ namespace graftal {
 namespace {
 
 /// The words that begin lines, apart from those that all languages share.
-constexpr std::array<std::string_view, 8> line_words = {"terminal", "below",  "probability", "map",
-                                                        "codes",    "follow", "start",       "condense"};
+constexpr std::array<std::string_view, 9> line_words = {
+    "terminal", "below", "probability", "map", "codes", "follow", "start", "control", "condense"};
 
 class RifsParser {
   public:
@@ -120,6 +120,7 @@ class RifsParser {
         if (stream_.at("codes")) return parse_rifs_codes(stream_, block.maps, map_room_);
         if (stream_.at("follow")) return parse_follow(block);
         if (stream_.at("start")) return parse_start(block);
+        if (stream_.at("control")) return parse_rifs_control(stream_, block);
         if (stream_.at("terminal")) return parse_terminal(block.terminal);
         if (stream_.at("condense")) {
             std::optional<RifsPart> part = parse_rifs_part(stream_);
@@ -142,7 +143,7 @@ class RifsParser {
             return true;
         }
         if (word.kind == TokenKind::name || !lost_)
-            stream_.expected("'map', 'codes', 'follow', 'start', 'condense', 'terminal' or '}'")
+            stream_.expected("'map', 'codes', 'follow', 'start', 'control', 'condense', 'terminal' or '}'")
                 .with_hint(hint_inside(word));
         lost_ = true;
         if (stream_.next().is("{")) stream_.skip_block();
@@ -153,7 +154,8 @@ class RifsParser {
         if (word.kind == TokenKind::number) return "write rows of numbers in 'codes 2d { ... }'";
         if (word.kind != TokenKind::name) return {};
         if (stream_.peek(1).is("=")) return fmt::format("write 'let {} = ...' before the block", word.text);
-        return did_you_mean(word.text, {"map", "codes", "follow", "start", "condense", "terminal"});
+        return did_you_mean(word.text,
+                            {"map", "codes", "follow", "start", "control", "condense", "terminal"});
     }
 
     /// `map NAME [from BLOCK] { ... }`.

@@ -14,8 +14,8 @@
 namespace graftal {
 
 /// The words that begin an item of a `rifs` block, or another block.
-inline constexpr std::array<std::string_view, 8> rifs_item_words = {"map",      "codes",    "follow", "start",
-                                                                    "condense", "terminal", "rifs",   "main"};
+inline constexpr std::array<std::string_view, 9> rifs_item_words = {
+    "map", "codes", "follow", "start", "control", "condense", "terminal", "rifs", "main"};
 /// The words that begin an item of a map, apart from those of transforms.
 inline constexpr std::array<std::string_view, 4> rifs_map_words = {"tint", "material", "probability",
                                                                    "terminal"};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include <glm/matrix.hpp>
 
 #include "compiler/lower/lower_transform.h"
+#include "compiler/lower/point_maps.h"
 #include "compiler/support/check.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
@@ -102,6 +104,7 @@ class SystemBuilder {
                 return std::nullopt; // one mistake for each row, such as one with the names of its columns
             numbers.push_back(*number);
         }
+        if (map.form == RifsForm::codes_barycentric && !check_weights(map, numbers)) return std::nullopt;
         const Affine result = map_from_codes(map.form, numbers);
         const std::string fault = range_fault(result);
         if (fault.empty()) return result;
@@ -112,6 +115,28 @@ class SystemBuilder {
             error.with_hint("write 'condense sphere scale ... translate ...' for a point; of itself graftal "
                             "does so for plain zeros in a block without 'follow' and 'start'");
         return std::nullopt;
+    }
+
+    /// The weights of each image add up to 1, and the control points span what they are points of.
+    bool check_weights(const RifsMap& map, const std::vector<double>& numbers) {
+        constexpr double slack = 1e-6;
+        const std::size_t points = control_points(numbers.size());
+        for (std::size_t image = 0; image < points; ++image) {
+            const auto first = numbers.begin() + static_cast<std::ptrdiff_t>(image * points);
+            const double sum = std::accumulate(first, first + static_cast<std::ptrdiff_t>(points), 0.0);
+            if (std::abs(sum - 1) <= slack) continue;
+            const Span span = join(map.codes[image * points].span, map.codes[(image + 1) * points - 1].span);
+            diagnostics_
+                .error(span, fmt::format("the weights of this image add up to {}, not 1", rounded(sum)))
+                .with_hint("they are the shares of the control points in it");
+            return false;
+        }
+        const std::vector<Vec3> control = control_of(numbers);
+        if (map_by_points(control, control)) return true;
+        diagnostics_.error(map.codes[points * points].span, points == 3
+                                                                ? "these control points lie on one line"
+                                                                : "these control points lie in one plane");
+        return false;
     }
 
     void check_probabilities(const RifsBlock& block) {
@@ -149,19 +174,15 @@ class SystemBuilder {
     double sum_ = 0;
 };
 
-/// The flat map of two columns and an offset; z by sqrt|det|, so that joint spectral radii and similarities
-/// stay what they were in the plane.
-Affine from_columns_2d(Vec3 x, Vec3 y, Vec3 offset) {
-    const double largest = std::max({std::abs(x.x), std::abs(x.y), std::abs(y.x), std::abs(y.y)});
-    double z = 0;
-    if (largest > 0) { // divided first, so that the determinant stays in range
-        const double det = (x.x / largest) * (y.y / largest) - (y.x / largest) * (x.y / largest);
-        z = largest * std::sqrt(std::abs(det));
-    }
-    return {Mat3(x, y, Vec3(0, 0, z)), offset};
-}
-
 } // namespace
+
+std::vector<Vec3> control_of(const std::vector<double>& codes) {
+    const std::size_t points = control_points(codes.size()), dimensions = points - 1;
+    std::vector<Vec3> control;
+    for (std::size_t i = points * points; i < codes.size(); i += dimensions)
+        control.emplace_back(codes[i], codes[i + 1], dimensions == 3 ? codes[i + 2] : 0);
+    return control;
+}
 
 std::optional<double> evaluate_probability(const std::optional<Expression>& probability,
                                            const Environment& lets, Diagnostics& diagnostics,
@@ -210,11 +231,21 @@ RifsSystem evaluate_rifs(const RifsFile& file, const Environment& lets, RifsLook
 Affine map_from_codes(RifsForm form, const std::vector<double>& n) {
     switch (form) {
     case RifsForm::codes_2d:
-        return from_columns_2d({n[0], n[2], 0}, {n[1], n[3], 0}, {n[4], n[5], 0});
+        return flat_map({n[0], n[2], 0}, {n[1], n[3], 0}, {n[4], n[5], 0});
     case RifsForm::codes_polar: {
         const Vec3 x = Affine::rotate({0, 0, 1}, n[2])({n[0], 0, 0});
         const Vec3 y = Affine::rotate({0, 0, 1}, n[3])({0, n[1], 0});
-        return from_columns_2d(x, y, {n[4], n[5], 0});
+        return flat_map(x, y, {n[4], n[5], 0});
+    }
+    case RifsForm::codes_barycentric: {
+        const std::vector<Vec3> control = control_of(n);
+        std::vector<Vec3> images;
+        for (std::size_t image = 0; image < control.size(); ++image) {
+            images.emplace_back(0.0);
+            for (std::size_t i = 0; i < control.size(); ++i)
+                images.back() += n[image * control.size() + i] * control[i];
+        }
+        return map_by_points(control, images).value_or(Affine::scale(Vec3(0.0)));
     }
     case RifsForm::codes_3d:
         return {glm::transpose(Mat3(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8])),

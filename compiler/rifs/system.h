@@ -77,6 +77,13 @@ RifsSystem evaluate_rifs(const RifsFile& file, const Environment& lets, RifsLook
 /// `form` has.
 Affine map_from_codes(RifsForm form, const std::vector<double>& numbers);
 
+/// Control points of a row of `codes barycentric` with so many numbers: three of the plane or four of space.
+inline std::size_t control_points(std::size_t codes) {
+    return codes == 28 ? 4 : 3;
+}
+/// Those points; they follow the weights.
+std::vector<Vec3> control_of(const std::vector<double>& codes);
+
 /// Looks up `from`, `start` and `follow` and fills the masters. Errors are reported; false if the digraphs
 /// are larger than the options allow.
 bool resolve_digraphs(RifsSystem& system, const Environment& lets, Lowering& lowering);

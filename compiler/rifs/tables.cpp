@@ -22,11 +22,16 @@ struct CodeColumns {
 
 constexpr CodeColumns codes_2d = {RifsForm::codes_2d, "2d", 6, "a b c d e f [p]"};
 constexpr CodeColumns codes_polar = {RifsForm::codes_polar, "polar", 6, "r q theta phi e f [p]"};
+/// Of three control points in the plane; the four of space make 16.
+constexpr CodeColumns codes_barycentric = {RifsForm::codes_barycentric, "barycentric", 9,
+                                           "the weights of the control points in the image of each, [p]"};
+constexpr std::size_t weights_in_space = 16;
 constexpr CodeColumns codes_3d = {RifsForm::codes_3d, "3d", 12, "a b c d e f g h i tx ty tz [p]"};
 
 /// `2d` is a number and a name to the lexer.
 const CodeColumns* parse_code_form(TokenStream& stream) {
     if (stream.accept("polar")) return &codes_polar;
+    if (stream.accept("barycentric")) return &codes_barycentric;
     const Token digit = stream.peek();
     const Token letter = stream.peek(1);
     const bool dimension = letter.is("d") || letter.is("D");
@@ -36,7 +41,7 @@ const CodeColumns* parse_code_form(TokenStream& stream) {
         stream.next();
         return digit.text == "2" ? &codes_2d : &codes_3d;
     }
-    stream.expected("'2d', 'polar' or '3d' after 'codes'");
+    stream.expected("'2d', 'polar', '3d' or 'barycentric' after 'codes'");
     return nullptr;
 }
 
@@ -47,6 +52,7 @@ bool at_row_end(const TokenStream& stream) {
 /// The numbers of a row, whose first token the stream is at.
 bool parse_row_numbers(TokenStream& stream, const CodeColumns& columns, RifsMap& map) {
     std::size_t count = 0;
+    const std::size_t most = columns.form == RifsForm::codes_barycentric ? weights_in_space : columns.count;
     const Token first = stream.peek();
     const bool bracket = first.is("[") || first.is("(");
     if (bracket && (first.is("[") || stream.peek(2).kind == TokenKind::number)) {
@@ -56,14 +62,16 @@ bool parse_row_numbers(TokenStream& stream, const CodeColumns& columns, RifsMap&
     for (bool begins = true; begins || (!at_row_end(stream) && !at_rifs_look(stream)); begins = false) {
         std::optional<Expression> number = parse_row_expression(stream);
         if (!number) return false;
-        if (count < columns.count)
-            map.codes.push_back(std::move(*number));
-        else if (count == columns.count)
-            map.probability = std::move(*number);
-        ++count;
+        if (count++ <= most) map.codes.push_back(std::move(*number));
         stream.accept(",");
     }
-    if (count == columns.count || count == columns.count + 1) return true;
+    for (const std::size_t whole : {columns.count, most}) {
+        if (count == whole) return true;
+        if (count != whole + 1) continue;
+        map.probability = std::move(map.codes.back());
+        map.codes.pop_back();
+        return true;
+    }
     stream.diagnostics().error(stream.span_from(first.span),
                                fmt::format("a row of 'codes {}' takes {} or {} numbers ({}), not {}",
                                            columns.keyword, columns.count, columns.count + 1, columns.names,
@@ -223,7 +231,8 @@ std::optional<double> literal(const Expression& expression) {
 
 /// Where a row of literal numbers maps everything to; nothing if it leaves more than a point.
 std::optional<Vec3> point_of(const RifsMap& row) {
-    if (row.broken || row.form == RifsForm::transforms) return std::nullopt;
+    if (row.broken || row.form == RifsForm::transforms || row.form == RifsForm::codes_barycentric)
+        return std::nullopt;
     std::vector<double> numbers;
     for (const Expression& code : row.codes) {
         const std::optional<double> number = literal(code);
@@ -235,6 +244,29 @@ std::optional<Vec3> point_of(const RifsMap& row) {
     for (std::size_t i = 0; i < linear; ++i)
         if (numbers[i] != 0) return std::nullopt;
     return Vec3(numbers[shift], numbers[shift + 1], row.form == RifsForm::codes_3d ? numbers[shift + 2] : 0);
+}
+
+constexpr const char* control_hint = "three points of the plane or four of space: "
+                                     "'control <0, 0>, <1, 0>, <1/2, 1>'";
+
+/// A row of barycentric weights gets the points that they are of.
+void add_control(RifsMap& map, const RifsBlock& block, Diagnostics& diagnostics) {
+    if (map.form != RifsForm::codes_barycentric || map.broken) return;
+    const std::size_t coordinates = map.codes.size() == weights_in_space ? 12 : 6;
+    map.broken = block.control.size() != coordinates;
+    if (!map.broken) {
+        map.codes.insert(map.codes.end(), block.control.begin(), block.control.end());
+    } else if (block.control.empty()) {
+        diagnostics
+            .error(map.span, fmt::format("'rifs {}' has no control points for this row", block.name.text))
+            .with_hint(control_hint);
+    } else {
+        diagnostics
+            .error(map.span, fmt::format("this row has {} weights, which the control points do not take",
+                                         map.codes.size()))
+            .with_note(block.control_span, "the control points are here")
+            .with_hint("9 weights a row for three points, 16 for four");
+    }
 }
 
 Expression number_at(double value, Span span) {
@@ -262,10 +294,32 @@ RifsPart speck(const RifsMap& row, Vec3 at) {
 
 } // namespace
 
+bool parse_rifs_control(TokenStream& stream, RifsBlock& block) {
+    const Token keyword = stream.next();
+    stream.accept(":");
+    if (!block.control.empty()) {
+        stream.diagnostics()
+            .error(keyword.span, "duplicate 'control'")
+            .with_note(block.control_span, "first given here");
+        return false;
+    }
+    std::size_t dimensions = 0;
+    const std::size_t count = parse_points(stream, block.control, dimensions, control_hint);
+    block.control_span = stream.span_from(keyword.span);
+    if (count == 0) return false;
+    if (count == dimensions + 1) return true;
+    stream.diagnostics()
+        .error(block.control_span, fmt::format("{} control points with {} coordinates", count, dimensions))
+        .with_hint(control_hint);
+    return false;
+}
+
 void settle_rifs_rows(RifsBlock& block, Diagnostics& diagnostics) {
     std::uint32_t number = 0;
-    for (RifsMap& map : block.maps)
+    for (RifsMap& map : block.maps) {
         map.number = ++number;
+        add_control(map, block, diagnostics);
+    }
     if (block.follow || !block.start.empty()) return;
     const auto is_point = [](const RifsMap& map) { return point_of(map).has_value(); };
     if (std::ranges::all_of(block.maps, is_point)) return;

@@ -1,6 +1,7 @@
 #include "compiler/syntax/transform.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -68,9 +69,36 @@ bool parse_shear(TokenStream& stream, TransformLine& line) {
     return true;
 }
 
+constexpr const char* points_hint =
+    "two or three points of the plane, or four of space, each with its image: "
+    "'points <0, 0>, <1, 0> -> <0, 0>, <1/2, 1/2>'";
+
+/// `<0, 0>, <1, 0> -> <0, 0>, <1/2, 1/2>`.
+bool parse_point_pairs(TokenStream& stream, TransformLine& line) {
+    const Token first = stream.peek();
+    std::size_t dimensions = 0;
+    const std::size_t points = parse_points(stream, line.numbers, dimensions, points_hint);
+    if (points == 0) return false;
+    if (!stream.accept("->")) {
+        stream.expected("'->' and the images of the points").with_hint(points_hint);
+        return false;
+    }
+    const std::size_t images = parse_points(stream, line.numbers, dimensions, points_hint);
+    if (images == 0) return false;
+    const bool counts = dimensions == 2 ? points == 2 || points == 3 : points == 4;
+    if (counts && images == points) return true;
+    stream.diagnostics()
+        .error(stream.span_from(first.span),
+               counts ? fmt::format("{} points have {} images", points, images)
+                      : fmt::format("{} points with {} coordinates make no map", points, dimensions))
+        .with_hint(points_hint);
+    return false;
+}
+
 bool parse_operands(TokenStream& stream, TransformLine& line, std::string_view keyword) {
     if (line.kind == LineKind::rotate) return parse_rotation(stream, line);
     if (line.kind == LineKind::shear) return parse_shear(stream, line);
+    if (line.kind == LineKind::points) return parse_point_pairs(stream, line);
     const std::size_t min = line.kind == LineKind::scale ? 1 : line.kind == LineKind::translate ? 2 : 12;
     const std::size_t max = std::max<std::size_t>(min, 3);
     const std::string_view hint = min == 12 ? "three rows: m00, m01, m02, tx, and so on" : "";
@@ -82,6 +110,36 @@ bool parse_operands(TokenStream& stream, TransformLine& line, std::string_view k
 }
 
 } // namespace
+
+std::size_t parse_points(TokenStream& stream, std::vector<Expression>& numbers, std::size_t& dimensions,
+                         const char* hint) {
+    std::size_t count = 0;
+    do {
+        const Token open = stream.peek();
+        if (!open.is("<")) {
+            stream.expected("a point, which begins with '<'").with_hint(hint);
+            return 0;
+        }
+        std::optional<std::vector<Expression>> point = parse_numbers(stream, 2, 3, "a point");
+        if (!point) return 0;
+        if (dimensions > 0 && point->size() != dimensions) {
+            stream.diagnostics()
+                .error(stream.span_from(open.span),
+                       fmt::format("this point has {} coordinates, the first one has {}", point->size(),
+                                   dimensions))
+                .with_hint(hint);
+            return 0;
+        }
+        dimensions = point->size();
+        std::ranges::move(*point, std::back_inserter(numbers));
+        ++count;
+    } while (stream.accept(","));
+    return count;
+}
+
+std::size_t point_dimensions(std::size_t numbers) {
+    return numbers == 24 ? 3 : 2;
+}
 
 bool at_transform(const TokenStream& stream) {
     return stream.at_name() && std::find(transform_keywords.begin(), transform_keywords.end(),

@@ -19,6 +19,9 @@ namespace {
 
 using LineKind = TransformLine::Kind;
 
+/// The unit of what never changes: the points by whose images a map is said.
+constexpr double fixed = 1e-9;
+
 bool has_names(const Expression& expression) {
     if (expression.kind == Expression::Kind::name && expression.text != "pi") return true;
     if (expression.kind == Expression::Kind::element) return true;
@@ -105,16 +108,23 @@ std::optional<MapForm> MapForm::made(RifsForm form, std::vector<TransformLine> l
         return std::nullopt;
     }
     result.matrix_ = *matrix;
-    result.flat_ = form == RifsForm::codes_2d || form == RifsForm::codes_polar || is_flat(*matrix);
+    const bool flat_row = form == RifsForm::codes_2d || form == RifsForm::codes_polar ||
+                          (form == RifsForm::codes_barycentric && control_points(result.values_.size()) == 3);
+    result.flat_ = flat_row || is_flat(*matrix);
     return result;
 }
 
 double MapForm::unit(std::size_t number) const {
     constexpr double degrees = 57.3;
+    if (form_ == RifsForm::codes_barycentric) {
+        const std::size_t points = control_points(values_.size());
+        return number < points * points ? 1 : fixed;
+    }
     if (form_ == RifsForm::codes_polar) return number == 2 || number == 3 ? degrees : 1;
     for (const TransformLine& line : lines_) {
-        if (number < line.numbers.size())
-            return line.kind == LineKind::rotate && number + 1 == line.numbers.size() ? degrees : 1;
+        const std::size_t count = line.numbers.size();
+        if (number < count && line.kind == LineKind::points) return 2 * number < count ? fixed : 1;
+        if (number < count) return line.kind == LineKind::rotate && number + 1 == count ? degrees : 1;
         number -= line.numbers.size();
     }
     return 1;
@@ -122,7 +132,7 @@ double MapForm::unit(std::size_t number) const {
 
 bool MapForm::translates(std::size_t number) const {
     if (form_ == RifsForm::codes_3d) return number >= 9;
-    if (is_row()) return number >= 4;
+    if (is_row()) return form_ != RifsForm::codes_barycentric && number >= 4;
     for (const TransformLine& line : lines_) {
         if (number < line.numbers.size()) {
             const bool rows = line.kind == LineKind::matrix || line.kind == LineKind::projection;
@@ -153,7 +163,8 @@ std::vector<TextEdit> MapForm::edits(const Document& document, const std::vector
         const Expression& number = numbers_[i];
         const double change = values[i] - values_[i];
         constexpr double rounding = 1e-15;
-        if (!number.span.known() || std::abs(change) <= rounding * std::abs(values_[i])) continue;
+        if (unit(i) == fixed || !number.span.known() || std::abs(change) <= rounding * std::abs(values_[i]))
+            continue;
         if (!has_names(number)) {
             edits.push_back({number.span.begin, number.span.end, number_text(values[i])});
             continue;

@@ -9,6 +9,8 @@
 #include "compiler/editing/maps/least_change.h"
 #include "compiler/editing/maps/map_table.h"
 #include "compiler/graph/graph.h"
+#include "compiler/lower/point_maps.h"
+#include "compiler/rifs/system.h"
 
 namespace graftal {
 
@@ -145,6 +147,19 @@ std::optional<std::vector<double>> numbers_for(const MapForm& form, const Affine
 
 // Rows of codes
 
+/// The weights by which a point is the mean of three points of the plane, or four of space.
+std::vector<double> barycentric(const std::vector<Vec3>& control, Vec3 point) {
+    std::vector<Vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    corners.resize(control.size());
+    const Vec3 shares = map_by_points(control, corners).value_or(Affine())(point);
+    std::vector<double> weights = {1 - shares.x - shares.y, shares.x, shares.y};
+    if (control.size() == 4) {
+        weights.front() -= shares.z;
+        weights.push_back(shares.z);
+    }
+    return weights;
+}
+
 std::vector<double> codes_of(RifsForm form, const Affine& map, const std::vector<double>& old) {
     const Mat3& m = map.linear;
     const Vec3 t = map.translation;
@@ -152,6 +167,16 @@ std::vector<double> codes_of(RifsForm form, const Affine& map, const std::vector
     if (form == RifsForm::codes_3d)
         return {m[0][0], m[1][0], m[2][0], m[0][1], m[1][1], m[2][1],
                 m[0][2], m[1][2], m[2][2], t.x,     t.y,     t.z};
+    if (form == RifsForm::codes_barycentric) {
+        const std::vector<Vec3> control = control_of(old);
+        std::vector<double> codes;
+        for (const Vec3& point : control) {
+            const std::vector<double> weights = barycentric(control, map(point));
+            codes.insert(codes.end(), weights.begin(), weights.end());
+        }
+        codes.insert(codes.end(), old.begin() + static_cast<std::ptrdiff_t>(codes.size()), old.end());
+        return codes;
+    }
     constexpr double degrees = 57.29577951308232;
     const auto polar = [&](double along, double across, std::size_t length, std::size_t angle) {
         double r = std::hypot(along, across);
@@ -339,8 +364,8 @@ std::string fault_of(const WrittenMap& map, const Affine& wanted) {
     const double out = std::max({std::abs(m[0][2]), std::abs(m[1][2]), std::abs(m[2][0]), std::abs(m[2][1]),
                                  std::abs(wanted.translation.z)});
     const bool row = map.row && map.row->form != RifsForm::transforms;
-    if (row && map.row->form != RifsForm::codes_3d && out > read_back * size_of(wanted))
-        return "A row of 'codes 2d' or 'codes polar' moves in the plane only.";
+    if (row && map.row->form != RifsForm::codes_3d && map.form->flat() && out > read_back * size_of(wanted))
+        return "A row of codes of the plane moves in the plane only.";
     return {};
 }
 

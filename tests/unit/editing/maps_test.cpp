@@ -49,6 +49,28 @@ TEST(Maps, ListsThoseOfATextWithTheirBoxes) {
     EXPECT_EQ(maps_of(Document("p.rifs", sign)).size(), 4u);
 }
 
+TEST(Maps, ByPointsMoveTheirImagesOnly) {
+    const std::string text = "rifs a {\n  map m { points <0, 0>, <1, 0> -> <0, 0>, <1/2, 0> }\n"
+                             "  map n { scale 1/2 }\n}\n";
+    const Affine map = Affine::translate({1, 2, 0}) * Affine::scale(Vec3(0.5));
+    EXPECT_EQ(moved_to("a.rifs", text, "m", map),
+              "rifs a {\n  map m { points <0, 0>, <1, 0> -> <1, 2>, <1.5, 2> }\n"
+              "  map n { scale 1/2 }\n}\n");
+}
+
+TEST(Maps, OfWeightsKeepTheirControlPoints) {
+    const std::string text = "rifs a {\n  control <0, 0>, <2, 0>, <0, 4>\n  codes barycentric {\n"
+                             "    m: 1 0 0  .5 .5 0  .5 0 .5   .3 # left\n"
+                             "    n: .5 .5 0  0 1 0  0 .5 .5  .7\n  }\n}\n";
+    const Affine map = Affine::translate({0, 1, 0}) * Affine::scale(Vec3(0.5));
+    EXPECT_EQ(moved_to("a.rifs", text, "m", map),
+              "rifs a {\n  control <0, 0>, <2, 0>, <0, 4>\n  codes barycentric {\n"
+              "    m: 0.75 0 0.25  0.25 .5 0.25  0.25 0 0.75   .3 # left\n"
+              "    n: .5 .5 0  0 1 0  0 .5 .5  .7\n  }\n}\n");
+    EXPECT_EQ(moved_to("a.rifs", text, "m", Affine::translate({0, 0, 1}) * map),
+              "refused: A row of codes of the plane moves in the plane only.");
+}
+
 TEST(Maps, OfObjectsAndWhyNot) {
     const Document document("m.inst",
                             "canonical object tip(n) { instance: cube scale: n, 1, 1 }\n"
@@ -93,7 +115,7 @@ TEST(Maps, KeepTheFormInWhichTheyAreWritten) {
 
 TEST(Maps, RefusesWhatATextCannotSay) {
     EXPECT_EQ(moved_to("m.rifs", "rifs a { codes 2d { .5 0 0 .5 0 0\n} }", "w1", moved(Affine(), {0, 0, 1})),
-              "refused: A row of 'codes 2d' or 'codes polar' moves in the plane only.");
+              "refused: A row of codes of the plane moves in the plane only.");
     EXPECT_EQ(moved_to("m.rifs", "rifs a { map b { scale 1/2 } }", "c", Affine()),
               "refused: There is no map 'c'.");
     EXPECT_EQ(moved_to("m.inst", "object a { scatter cube count 3 over disc 1 }", "a/cube", Affine()),

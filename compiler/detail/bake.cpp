@@ -102,7 +102,7 @@ class Baker {
         if (baked_.complete) return std::move(baked_);
         Baked stopped;
         stopped.visits = baked_.visits;
-        stopped.triangles = baked_.triangles;
+        stopped.made_triangles = baked_.made_triangles;
         stopped.complete = false;
         return stopped;
     }
@@ -114,7 +114,8 @@ class Baker {
         if (!baked_.complete) return;
         colour_leaves();
         for (BakedPart& part : parts_)
-            build(part);
+            if (baked_.complete) build(part);
+        if (!baked_.complete) return;
         for (BakedPart& part : parts_)
             finish(part);
     }
@@ -237,6 +238,7 @@ class Baker {
 
     void build(BakedPart& part) {
         MeshBuilder builder(part.smooth);
+        counted_ = 0;
         const Affine body_from_representative = inverse(baked_.representative_from_body);
         for (std::uint32_t number = 0; number < part.leaves.size(); ++number) {
             const KeptLeaf& leaf = part.leaves[number];
@@ -247,14 +249,14 @@ class Baker {
                 const double around = cut_.materials[*part.material].around;
                 builder.add_textured(primitive, level, place, texture_space(primitive, around, leaf.turns),
                                      number);
-                if (too_many(builder)) return;
+                if (!goes_on(part, builder)) return;
                 continue;
             }
             if (primitive == PrimitiveKind::sphere && level == 0) place = place * spread_turn(number);
             builder.add(primitive, level, place, number,
                         leaf.normals.seen_from(baked_.representative_from_body.linear[0][0],
                                                baked_.representative_from_body.translation));
-            if (too_many(builder)) return;
+            if (!goes_on(part, builder)) return;
         }
         part.leaves = {};
         builder.finish();
@@ -263,10 +265,15 @@ class Baker {
         baked_.triangles += part.mesh.triangles.size();
     }
 
-    bool too_many(const MeshBuilder& builder) {
-        if (baked_.triangles + builder.triangle_count() <= 4 * max_triangles_) return false;
-        baked_.complete = false;
-        return true;
+    /// Counts what the last leaf has brought. False where that is too much.
+    bool goes_on(const BakedPart& part, const MeshBuilder& builder) {
+        constexpr std::uint64_t price_of_textured = 2;
+        const std::size_t here = builder.triangle_count();
+        baked_.made_triangles +=
+            (here - std::exchange(counted_, here)) * (part.textured ? price_of_textured : 1);
+        baked_.complete = baked_.triangles + here <= 4 * max_triangles_ &&
+                          baked_.made_triangles <= request_.most_made_triangles;
+        return baked_.complete;
     }
 
     void finish(BakedPart& part) {
@@ -311,6 +318,7 @@ class Baker {
     const BakeRequest& request_;
     std::size_t max_triangles_;
     std::uint64_t widened_ = 0; ///< leaves
+    std::size_t counted_ = 0;   ///< triangles of the part that is being built
     PrimitiveNumbers primitives_;
     Baked baked_;
     std::vector<BakedPart> parts_;

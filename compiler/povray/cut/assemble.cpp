@@ -39,12 +39,16 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
         }
         request.most_visits = static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) *
                                                          WorkRates::visits / limits.slowness);
+        request.most_made_triangles =
+            static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::baked_triangles);
         baked.push_back(bake(cut, symmetry, request, most_triangles));
         if (limits.meter) limits.meter->add(baked.back().visits);
         triangles += baked.back().triangles;
         limits.work_seconds -=
             limits.slowness * static_cast<double>(baked.back().visits) / WorkRates::visits +
-            static_cast<double>(baked.back().triangles) / WorkRates::baked_triangles +
+            static_cast<double>(
+                std::max<std::uint64_t>(baked.back().made_triangles, baked.back().triangles)) /
+                WorkRates::baked_triangles +
             static_cast<double>(baked.back().shell_work) / WorkRates::shell_points;
         if (limits.work_seconds < 0) return std::nullopt;
         if (!baked.back().complete || triangles > limits.max_triangles) return std::nullopt;

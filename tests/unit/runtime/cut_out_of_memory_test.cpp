@@ -44,8 +44,7 @@ struct Model {
     Symmetry symmetry = find_symmetry(cut);
 };
 
-Baked baked(const Model& model) {
-    BakeRequest request;
+Baked baked(const Model& model, BakeRequest request = {}) {
     request.representative = model.cut.root;
     request.detail_per_unit = INFINITY;
     request.painters = {{model.symmetry.pair[model.cut.root], Rgb(0.5)}};
@@ -65,6 +64,28 @@ TEST(OutOfMemory, VisitsOfABakeAreKept) {
         std::_Exit(good ? 0 : 1);
     };
     EXPECT_EXIT(bake_within(), testing::ExitedWithCode(0), "");
+}
+
+/// A mesh that is given up has cost what was made of it.
+TEST(BakeGivenUp, CountsTheTrianglesThatItMade) {
+    Graph graph;
+    Object object{"row", {}, {}, {}, {}};
+    const ObjectId cube = graph.primitive(PrimitiveKind::cube);
+    for (int i = 0; i < 1000; ++i)
+        object.instances.push_back({cube, Affine::translate({3.0 * i, 0, 0}), {}, {}, {}});
+    graph.root = graph.add(std::move(object));
+    Model model;
+    model.graph = graph;
+    model.cut = test::cut_of(model.graph);
+    model.symmetry = find_symmetry(model.cut);
+    EXPECT_EQ(baked(model).made_triangles, 12000u);
+    BakeRequest request;
+    request.most_made_triangles = 6000;
+    const Baked stopped = baked(model, request);
+    EXPECT_FALSE(stopped.complete);
+    EXPECT_TRUE(stopped.parts.empty());
+    EXPECT_GT(stopped.made_triangles, 6000u);
+    EXPECT_LT(stopped.made_triangles, 6100u);
 }
 
 /// Whether all of it becomes one mesh, or as many placements as there are balls.

@@ -34,6 +34,13 @@ constexpr StatsKey keys[] = {
     {"contraction certificate holds", "whether a second check of the proof succeeds"},
     {"dimension", "similarity dimension: 1 for a line, 2 for a surface, between them for a fern; right where "
                   "copies do not overlap"},
+    {"boxes dimension",
+     "slope of the boxes that the figure meets over their side, both as logarithms (--boxes)"},
+    {"boxes error", "standard error of this slope"},
+    {"boxes least", "least slope from one side to its half"},
+    {"boxes most", "greatest slope from one side to its half"},
+    {"boxes sides", "greatest and least side of the boxes that the slope is of"},
+    {"boxes counts", "boxes of each of these sides, the greatest first"},
     {"bounds min", "least x, y and z of a box that contains the figure"},
     {"bounds max", "greatest x, y and z of this box"},
     {"unbounded", "whether the model has an endless plane, which the bounds leave out"},
@@ -114,7 +121,21 @@ Json families_json(const Derivation& derivation) {
     return families;
 }
 
-Json json_of(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources) {
+Json boxes_json(const BoxCount& boxes) {
+    if (boxes.dimension == 0) return nullptr;
+    Json counts = Json::array();
+    for (std::size_t i = boxes.first_row; i < boxes.rows.size(); ++i)
+        counts.push_back(boxes.rows[i].boxes);
+    return {{"dimension", boxes.dimension},
+            {"error", boxes.error},
+            {"least", boxes.least_slope},
+            {"most", boxes.most_slope},
+            {"sides", Json::array({boxes.rows[boxes.first_row].side, boxes.rows.back().side})},
+            {"counts", std::move(counts)}};
+}
+
+Json json_of(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources,
+             const BoxCount* boxes) {
     const Graph& graph = model.graph;
     const bool empty = graph.objects.empty();
     const bool converges =
@@ -130,10 +151,13 @@ Json json_of(const AnalysedModel& model, std::optional<unsigned> steps, const So
         {"contraction", contraction_json(model)},
         {"dimension",
          converges && !empty ? or_null(similarity_dimension(graph, model.components)) : Json(nullptr)},
+    };
+    if (boxes) json["boxes"] = boxes_json(*boxes);
+    json.update({
         {"bounds", bounds_json(model)},
         {"unbounded", !model.bounds.empty() && model.bounds[graph.root].unbounded},
         {"error", model.derivation ? model.derivation->error : 0},
-    };
+    });
     if (const std::optional<Derivation>& derivation = model.derivation) {
         if (derivation->timed) json["time"] = derivation->time;
         const bool finite = derivation->steps.has_value();
@@ -174,15 +198,17 @@ void append_lines(const Json& json, const std::string& prefix, std::string& out)
 
 } // namespace
 
-std::string stats_json(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources) {
-    Json json = json_of(model, steps, sources);
+std::string stats_json(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources,
+                       const BoxCount* boxes) {
+    Json json = json_of(model, steps, sources, boxes);
     json["leaves"] = json["primitives"]; // its former name, for one version
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string stats_text(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources) {
+std::string stats_text(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources,
+                       const BoxCount* boxes) {
     std::string text;
-    append_lines(json_of(model, steps, sources), "", text);
+    append_lines(json_of(model, steps, sources, boxes), "", text);
     return text;
 }
 

@@ -5,16 +5,20 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/detail/shell/box_count.h"
 #include "compiler/session/values.h"
 
 namespace graftal {
 
 /// The text of `graftal stats --json` for a model that is drawn to `steps` levels (levels_of()): one object,
 /// its keys in a fixed order. `sources`: those that the model was made of.
-std::string stats_json(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources);
+/// `boxes`: a count of it, if one was asked for.
+std::string stats_json(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources,
+                       const BoxCount* boxes = nullptr);
 
 /// The text of `graftal stats` for people, one line a key.
-std::string stats_text(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources);
+std::string stats_text(const AnalysedModel& model, std::optional<unsigned> steps, const SourceMap& sources,
+                       const BoxCount* boxes = nullptr);
 
 /// A key of stats_text(), without the name of a family: "contraction rate", "families members".
 struct StatsKey {

@@ -53,6 +53,27 @@ TEST_F(Stats, OfThePoundSignAreThoseOfThePaper) {
     }
 }
 
+/// Boxes that the unfolding meets, against dimensions that are known.
+TEST_F(Stats, BoxesHaveTheDimensionOfTheSet) {
+    struct Known {
+        const char* scene;
+        double dimension, slack;
+    };
+    for (const auto& [scene, dimension, slack] :
+         {Known{"ifs/koch_curve.rifs", 1.2618595, 0.015}, Known{"hart/sierpinski.inst", 1.5849625, 0.01},
+          Known{"ifs/fern.rifs", 1.86, 0.02}, Known{"ifs/sierpinski_carpet.rifs", 1.8927893, 0.03},
+          Known{"limits/tree.lsys", 2.72, 0.06}}) {
+        const Json boxes = stats(GRAFTAL_SOURCE_DIR "/scenes/" + std::string(scene) + " --boxes")["boxes"];
+        EXPECT_NEAR(boxes["dimension"].get<double>(), dimension, slack) << scene;
+        EXPECT_LT(boxes["error"].get<double>(), slack) << scene;
+        EXPECT_GE(boxes["counts"].size(), 4u) << scene;
+        EXPECT_GT(boxes["sides"][0].get<double>(), boxes["sides"][1].get<double>()) << scene;
+        EXPECT_LE(boxes["least"], boxes["dimension"]) << scene;
+        EXPECT_GE(boxes["most"], boxes["dimension"]) << scene;
+    }
+    EXPECT_FALSE(stats(pound_sign).contains("boxes"));
+}
+
 TEST_F(Stats, CountsAreExactAtAHundredLevels) {
     // 8 * 7^99
     EXPECT_EQ(stats(pound_sign + " --steps 100")["primitives"],

@@ -168,6 +168,8 @@ void add_check(CLI::App& app, Options& options) {
 void add_stats(CLI::App& app, Options& options) {
     add_model(app, options);
     app.add_flag("--json", options.json, "Print one JSON object on standard output");
+    app.add_flag("--boxes", options.boxes,
+                 "Count the boxes of a grid that the figure meets, for sides that halve: its box dimension");
     add_inspecting_work(app, options);
     add_common(app, options);
     std::string keys = "Keys:\n";
@@ -175,6 +177,7 @@ void add_stats(CLI::App& app, Options& options) {
         keys += fmt::format("  {:<30} {}\n", key.name, key.meaning);
     app.footer(keys + "Examples:\n"
                       "  graftal stats scenes/hart/pound_sign.rifs\n"
+                      "  graftal stats scenes/ifs/koch_curve.rifs --boxes\n"
                       "  graftal stats scenes/hart/pound_sign.rifs --steps 100 --json | jq -r .primitives");
 }
 

@@ -73,6 +73,7 @@ struct Options {
     ExportOptions file;       ///< of `export`; its output and metadata are those of `render`
     bool json = false;
     bool check = false; ///< of `format`: write nothing
+    bool boxes = false; ///< of `stats`
     double threshold = 0;
     bool in_parts = false; ///< the picture of `render` may be larger than one that is drawn at once
 };

@@ -1,4 +1,5 @@
 #include "compiler/session/stats.h"
+#include "compiler/detail/work.h"
 #include "compiler/session/stages.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/report.h"
@@ -11,11 +12,19 @@ int run_stats(const Options& options) {
     compile.lower.may_draw_nothing = true;
     CommandSession session(options, options.operands.front());
     const std::shared_ptr<const AnalysedModel> model = session.analysed(compile, compilation, true);
+    std::optional<BoxCount> boxes;
+    if (const auto prepared = model && options.boxes ? session.prepared(compile, compilation) : nullptr) {
+        constexpr double share = 0.5; // of the work, which the stages before had, too
+        const double moves = share * compile.detail.work_seconds * WorkRates::shell_points;
+        boxes = count_boxes(prepared->cut, prepared->cut.root, prepared->root_steps,
+                            static_cast<std::uint64_t>(moves));
+    }
     const int status = conclude(options, compilation);
     if (!model || status != exit_done) return status;
     const std::optional<unsigned> steps = levels_of(*model, compile.lower.steps);
-    return options.json ? print_output(stats_json(*model, steps, compilation.sources))
-                        : print_output(stats_text(*model, steps, compilation.sources));
+    const BoxCount* counted = boxes ? &*boxes : nullptr;
+    return print_output(options.json ? stats_json(*model, steps, compilation.sources, counted)
+                                     : stats_text(*model, steps, compilation.sources, counted));
 }
 
 } // namespace graftal

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compiler/detail/graph/cut_graph.h"
+
+namespace graftal {
+
+/// A set covered by boxes of several sides (K. Falconer, "Fractal Geometry", 3.1).
+struct BoxCount {
+    struct Row {
+        double side = 0; ///< in the node's units
+        std::uint64_t boxes = 0;
+    };
+    std::vector<Row> rows;     ///< each side half of that before it
+    std::size_t first_row = 0; ///< of those that the line is laid through; the ones before it are too coarse
+    double dimension = 0;      ///< slope of log boxes over log 1/side
+    double error = 0;          ///< its standard error
+    double least_slope = 0, most_slope = 0; ///< between two rows that follow each other
+};
+
+/// Counts the boxes of a grid that the node's parts meet, from the unfolding itself, with sides down to where
+/// `most_work` moves of a point (WorkRates::shell_points) or `most_boxes` end. A solid counts by its surface.
+/// No rows for an unbounded node, and no slope from less than three rows. Requires a bounded radius.
+BoxCount count_boxes(const CutGraph& cut, NodeId node, std::uint32_t steps, std::uint64_t most_work,
+                     std::size_t most_boxes = 4'000'000);
+
+} // namespace graftal

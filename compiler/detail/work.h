@@ -44,6 +44,7 @@ struct RayWork {
     static constexpr std::uint64_t boxes_of_packet = 3; ///< against all rays of a packet
     static constexpr std::uint64_t mesh_step = 4;       ///< a node or a triangle of a mesh's tree
     static constexpr std::uint64_t shaded = 4;          ///< a level of the path to what is seen
+    static constexpr std::uint64_t pattern_wave = 1;    ///< of a solid pattern (SolidPattern::waves())
     static constexpr std::uint64_t lamp = 4;            ///< a sharp light on what is seen, besides its ray
     static constexpr std::uint64_t soft_lamp = 12;      ///< one that is sampled
     static constexpr std::uint64_t sky = 16;            ///< the sky likewise

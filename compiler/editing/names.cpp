@@ -144,6 +144,8 @@ class Collector {
         const bool let = inner || statement.kind == SceneStatement::Kind::let;
         for (const SceneField& field : statement.fields) {
             expressions(scope, field.values);
+            if (statement.kind == SceneStatement::Kind::preset)
+                use(scope, Space::value, document_.text(field.span), field.span);
             const bool names_material = field.keyword == "material" || field.keyword == "from";
             if (names_material && field.name_span.known())
                 use(scope, Space::material, field.name, field.name_span);

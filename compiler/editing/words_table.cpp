@@ -40,6 +40,7 @@ constexpr Row rows[] = {
     {bit(P::lsys_file) | bit(P::rifs_file) | bit(P::inst_file), {"haze", "haze { distance: d  color: r, g, b }", "Hides distant parts: after `distance`, a third of their light is left."}},
     {bit(P::lsys_file) | bit(P::rifs_file) | bit(P::inst_file) | bit(P::lsys_block) | bit(P::orbit), {"let", "let NAME = value", "Names a constant, which may use those above it. `--set NAME=VALUE` replaces it."}},
     {bit(P::lsys_file) | bit(P::rifs_file) | bit(P::inst_file) | bit(P::lsys_block) | bit(P::rifs_block), {"inner", "inner NAME = value members N", "A parameter of the model's shape in [0, 1], which models that place this one may give."}},
+    {bit(P::lsys_file) | bit(P::rifs_file) | bit(P::inst_file), {"preset", "preset NAME { angle = 30  ratio = 0.7 }", "Values of `let`, `inner` and settings under one name: `--preset NAME` takes them."}},
     {bit(P::lsys_block), {"angle", "angle degrees", "Degrees of `+ - & ^ \\ /` without a parameter; 90 if not given."}},
     {bit(P::lsys_block), {"step", "step length", "Length of `F f G g` without a parameter; 1 if not given."}},
     {bit(P::lsys_block), {"width", "width diameter", "Diameter of segments at the start."}},

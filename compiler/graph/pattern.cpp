@@ -62,6 +62,18 @@ const std::array<std::array<PatternWave, pattern_waves>, pattern_levels>& patter
     return table;
 }
 
+unsigned SolidPattern::waves() const {
+    constexpr unsigned of_warp = 18;
+    unsigned sum = 0;
+    for (const PatternLayer& layer : layers) {
+        const unsigned of_octave = layer.kind == PatternKind::noise || layer.kind == PatternKind::ridges ? 8
+                                   : layer.kind == PatternKind::cells                                    ? 4
+                                                                                                         : 1;
+        sum += of_octave * (layer.octaves + 1) + (layer.warp != 0 ? of_warp : 0);
+    }
+    return sum;
+}
+
 double pattern_size(double part_size) {
     return std::exp2(0.5 * std::round(2 * std::log2(part_size)));
 }

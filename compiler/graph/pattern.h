@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -44,6 +43,8 @@ struct SolidPattern {
     double bump = 0;                  ///< steepness of the relief
     bool operator==(const SolidPattern&) const = default;
 
+    /// Waves of all layers, about: the cost of a look at it.
+    unsigned waves() const;
     explicit operator bool() const { return !layers.empty(); }
     static constexpr unsigned most_octaves = 10;
     static constexpr std::size_t most_layers = 4;

@@ -8,6 +8,7 @@
 #include "compiler/graph/verify.h"
 #include "compiler/languages/languages.h"
 #include "compiler/lower/check_graph.h"
+#include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/support/number.h"
 #include "compiler/support/path_text.h"
@@ -24,9 +25,10 @@ LoweredText lower_root(FileId file, const std::string& path, const LowerOptions&
                        Diagnostics& diagnostics, const LowerHelp& help) {
     WorkMeter meter(help.control, "lower", lowered_a_look, StagePrice::word);
     ParsedFiles parsed_here;
+    LowerOptions with_preset = options;
     Lowering lowering{.sources = sources,
                       .diagnostics = diagnostics,
-                      .options = options,
+                      .options = with_preset,
                       .help = help,
                       .meter = meter,
                       .languages = languages(),
@@ -38,6 +40,12 @@ LoweredText lower_root(FileId file, const std::string& path, const LowerOptions&
                                                  shortest(*options.time)))
             .with_hint("give a whole number");
         return {};
+    }
+    if (language && !options.preset.empty()) {
+        Diagnostics quiet; // what is wrong with the text is reported when it is lowered
+        const std::vector<SceneStatement> statements =
+            lowering.parsed.tree(*language, file, sources, languages(), quiet).inner_statements().file;
+        if (!take_preset(statements, options.preset, file, with_preset, diagnostics)) return {};
     }
     lowering.loading.push_back({normalised_path(path), Span()});
     LoweredText model{lower_file(file, Span{file, 0, 0}, lowering), std::move(lowering.notes)};

@@ -25,6 +25,7 @@ class ParsedFiles;
 
 struct LowerOptions {
     std::map<std::string, double, std::less<>> set; ///< `--set NAME=VALUE`: replaces the value of a `let`
+    std::string preset;            ///< of the root model: it sets what `set` does not; "": none
     std::optional<unsigned> steps; ///< derivation steps of an L-system, in place of what the model says
     /// The time to draw at, in steps. L-systems whose drawing reads the time are drawn at this age, after
     /// the steps done by then. Others take `steps` or, without these, the steps done by then. Other

@@ -189,13 +189,14 @@ void check_duplicates(const std::vector<SceneStatement>& statements, Diagnostics
     std::map<std::pair<Kind, std::string>, Span> first;
     for (const SceneStatement& statement : statements) {
         if (is_let(statement) || statement.kind == Kind::light) continue;
-        if (statement.kind == Kind::material && statement.name.empty()) continue; // reported already
+        const bool named = statement.kind == Kind::material || statement.kind == Kind::preset;
+        if (named && statement.name.empty()) continue; // reported already
         const auto [place, fresh] = first.try_emplace({statement.kind, statement.name}, statement.span);
         if (fresh) continue;
         const std::string& keyword = scene_keywords()[static_cast<std::size_t>(statement.kind)];
         diagnostics
-            .error(statement.span, statement.kind == Kind::material
-                                       ? fmt::format("duplicate material '{}'", statement.name)
+            .error(statement.span, named
+                                       ? fmt::format("duplicate {} '{}'", keyword, statement.name)
                                        : fmt::format("duplicate '{}'", keyword))
             .with_note(place->second, "first defined here");
     }
@@ -291,6 +292,32 @@ Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& 
     return lets;
 }
 
+bool take_preset(const std::vector<SceneStatement>& statements, const std::string& name, FileId file,
+                 LowerOptions& options, Diagnostics& diagnostics) {
+    const auto is_preset = [](const SceneStatement& statement) { return statement.kind == Kind::preset; };
+    const auto found = std::ranges::find_if(statements, [&](const SceneStatement& statement) {
+        return is_preset(statement) && statement.name == name;
+    });
+    if (found == statements.end()) {
+        std::vector<std::string> known;
+        for (const SceneStatement& statement : statements)
+            if (is_preset(statement)) known.push_back(statement.name);
+        diagnostics.error(Span{file, 0, 0}, fmt::format("the model has no preset '{}'", name))
+            .with_hint(known.empty() ? fmt::format("'preset {} {{ NAME = NUMBER }}' defines one", name)
+                                     : choices(name, known));
+        return false;
+    }
+    bool good = true;
+    for (const SceneField& field : found->fields) {
+        const std::optional<double> value = evaluate(field.values[0], {}, diagnostics);
+        if (value)
+            options.set.try_emplace(field.keyword, *value);
+        else
+            good = false;
+    }
+    return good;
+}
+
 void lower_settings(const std::vector<SceneStatement>& statements, const Environment& lets, Graph& graph,
                     Lowering& lowering) {
     check_duplicates(statements, lowering.diagnostics);
@@ -330,6 +357,7 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
             break;
         case Kind::let:
         case Kind::inner:
+        case Kind::preset:
             break;
         }
     }

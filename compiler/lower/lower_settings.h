@@ -25,6 +25,11 @@ void check_set_names(const Environment& known, const std::vector<std::string>& s
 /// The value that `--set` gives a setting of the root model; a `let` of that name comes first.
 std::optional<double> set_value(std::string_view setting, const Environment& lets, const Lowering& lowering);
 
+/// Adds what a preset sets to LowerOptions::set; what is set there already stays. False after an error: there
+/// is no such preset, or its numbers have no value.
+bool take_preset(const std::vector<SceneStatement>& statements, const std::string& name, FileId file,
+                 LowerOptions& options, Diagnostics& diagnostics);
+
 /// Fills `settings` and `materials` of `graph` from all other statements; errors for values out of range and
 /// for duplicates. Material names are then known: use material_named().
 void lower_settings(const std::vector<SceneStatement>& statements, const Environment& lets, Graph& graph,

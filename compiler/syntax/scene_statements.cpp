@@ -114,7 +114,9 @@ class StatementParser {
             stream_.accept(":");
             return parse_value("steps", keyword.span, Shape::number, "steps");
         case Kind::material:
-            return parse_name() && parse_block(keyword);
+            return parse_name(keyword) && parse_block(keyword);
+        case Kind::preset:
+            return parse_name(keyword) && parse_preset();
         case Kind::background:
             stream_.accept(":");
             if (!stream_.at("{")) return parse_value("zenith", keyword.span, Shape::color, "background");
@@ -125,8 +127,8 @@ class StatementParser {
     }
 
   private:
-    bool parse_name() {
-        const std::optional<Token> name = stream_.expect_name("a name after 'material'");
+    bool parse_name(const Token& keyword) {
+        const std::optional<Token> name = stream_.expect_name(fmt::format("a name after '{}'", keyword.text));
         if (!name) return false;
         statement_.name = name->text;
         statement_.span = name->span;
@@ -145,6 +147,28 @@ class StatementParser {
                     stream_.next();
             }
         } while (stream_.accept(","));
+        return true;
+    }
+
+    /// `{ angle = 30, ratio = 0.7 }`.
+    bool parse_preset() {
+        const Token open = stream_.peek();
+        if (!stream_.expect("{", statement_.name)) return false;
+        while (!stream_.accept("}")) {
+            if (stream_.accept(",")) continue;
+            if (stream_.at_end() || (stream_.peek().first_on_line && begins_other_statement())) {
+                stream_.expected(fmt::format("'}}' at the end of 'preset {}'", statement_.name))
+                    .with_note(open.span, "to close this '{'");
+                return false;
+            }
+            const std::optional<Token> name = stream_.expect_name("a name to set or '}'");
+            if (name && (stream_.accept(":") || stream_.expect("=", name->text)) &&
+                parse_value(name->text, name->span, Shape::number, name->text))
+                continue;
+            statement_.complete = false;
+            stream_.skip_block();
+            return true;
+        }
         return true;
     }
 
@@ -203,6 +227,8 @@ class StatementParser {
             return "haze { distance: 300  color: 0.7, 0.8, 0.9 }";
         case Kind::film:
             return "film { exposure: 1.2 }";
+        case Kind::preset:
+            return "preset oak { angle = 30  ratio = 0.7 }";
         case Kind::ground:
             return "ground { height: 0  color: 0.3, 0.3, 0.25 }";
         default:
@@ -341,7 +367,7 @@ std::string layer_field(std::string_view keyword, std::size_t layer) {
 const std::vector<std::string>& scene_keywords() {
     static const std::vector<std::string> keywords = {"camera",   "light", "background", "ground",
                                                       "material", "steps", "let",        "inner",
-                                                      "sky",      "film",  "haze"};
+                                                      "sky",      "film",  "haze",       "preset"};
     return keywords;
 }
 
@@ -357,6 +383,7 @@ bool at_scene_statement(const TokenStream& stream) {
     if (stream.at("inner")) return stream.peek(1).kind == TokenKind::name && !stream.peek(1).first_on_line;
     if (stream.at("sky") || stream.at("film") || stream.at("haze"))
         return stream.peek(1).is("{") || stream.peek(1).is(":");
+    if (stream.at("preset")) return stream.peek(1).kind == TokenKind::name && stream.peek(2).is("{");
     return kind_of(stream.peek()).has_value();
 }
 

@@ -19,9 +19,10 @@ struct SceneField {
     Span name_span;
 };
 
-/// camera, light, sky, haze, film, background, ground, material, steps, let or inner. Short forms are spelled
-/// out: `steps: 5` has the field "steps", `background: r,g,b` the field "zenith", and `let a = 1, b = 2` one
-/// field a name. `inner k = 0.5 members 16` is a `let` with a second value.
+/// camera, light, sky, haze, film, background, ground, material, steps, let, inner or preset. Short forms are
+/// spelled out: `steps: 5` has the field "steps", `background: r,g,b` the field "zenith", and `let a = 1, b =
+/// 2` one field a name. `inner k = 0.5 members 16` is a `let` with a second value. `preset oak { angle = 30
+/// }` has a field for each name that it sets.
 struct SceneStatement {
     enum class Kind : std::uint8_t {
         camera,
@@ -34,12 +35,13 @@ struct SceneStatement {
         inner,
         sky,
         film,
-        haze
+        haze,
+        preset
     };
 
     Kind kind = Kind::camera;
-    std::string name; ///< of a material
-    Span span;        ///< of the keyword, or of the material's name
+    std::string name; ///< of a material or preset
+    Span span;        ///< of the keyword, or of that name
     std::vector<SceneField> fields;
     bool complete = true; ///< false if an error lost a part of it
 };

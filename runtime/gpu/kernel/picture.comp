@@ -53,6 +53,11 @@ float hypotenuse(float x, float y) {
     return length(vec2(x, y));
 }
 
+void cosine_and_sine(float angle, out float cosine, out float sine) {
+    cosine = cos(angle);
+    sine = sin(angle);
+}
+
 bool is_finite(vec3 v) {
     return !any(isnan(v)) && !any(isinf(v));
 }

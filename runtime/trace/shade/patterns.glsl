@@ -4,17 +4,24 @@
 
 /// About normal, of deviation 1. `slope`: its gradient.
 FORMULA real pattern_noise(int level, real frequency, vec3 x, OUT(vec3) slope) {
+    vec3 directions[8];
+    real angles[8];
+    real cosines[8];
+    real sines[8];
+    for (int i = 0; i < 8; ++i) {
+        real phase;
+        pattern_wave(level, i, directions[i], phase);
+        angles[i] = frequency * dot(directions[i], x) + phase;
+    }
+    for (int i = 0; i < 8; ++i)
+        cosine_and_sine(angles[i], cosines[i], sines[i]);
     real sum = REAL(0);
     slope = vec3(REAL(0));
     for (int i = 0; i < 8; ++i) {
-        vec3 direction;
-        real phase;
-        pattern_wave(level, i, direction, phase);
-        const real angle = frequency * dot(direction, x) + phase;
-        sum += cos(angle);
-        slope -= frequency * sin(angle) * direction;
+        sum += cosines[i];
+        slope -= sines[i] * directions[i];
     }
-    slope *= REAL(0.5);
+    slope *= REAL(0.5) * frequency;
     return REAL(0.5) * sum;
 }
 
@@ -22,15 +29,21 @@ FORMULA real pattern_noise(int level, real frequency, vec3 x, OUT(vec3) slope) {
 FORMULA real pattern_cells(int level, real frequency, vec3 x, OUT(vec3) slope) {
     real nearest = REAL(2);
     slope = vec3(REAL(0));
+    vec3 directions[4];
+    real angles[4];
+    real cosines[4];
+    real sines[4];
     for (int i = 0; i < 4; ++i) {
-        vec3 direction;
         real phase;
-        pattern_wave(level, i, direction, phase);
-        const real angle = REAL(0.5) * (frequency * dot(direction, x) + phase);
-        const real wave = sin(angle);
-        if (abs(wave) < nearest) {
-            nearest = abs(wave);
-            slope = (wave < REAL(0) ? REAL(-0.5) : REAL(0.5)) * frequency * cos(angle) * direction;
+        pattern_wave(level, i, directions[i], phase);
+        angles[i] = REAL(0.5) * (frequency * dot(directions[i], x) + phase);
+    }
+    for (int i = 0; i < 4; ++i)
+        cosine_and_sine(angles[i], cosines[i], sines[i]);
+    for (int i = 0; i < 4; ++i) {
+        if (abs(sines[i]) < nearest) {
+            nearest = abs(sines[i]);
+            slope = (sines[i] < REAL(0) ? REAL(-0.5) : REAL(0.5)) * frequency * cosines[i] * directions[i];
         }
     }
     // Narrow cracks between plates.
@@ -50,13 +63,17 @@ FORMULA real pattern_octave(int kind, int level, vec3 x, OUT(vec3) slope) {
     }
     if (kind == 2) return pattern_cells(level, frequency, x, slope);
     const real root2 = REAL(1.4142135623730951);
+    real cosine;
+    real sine;
     if (kind == 3) {
-        slope = vec3(REAL(0), -root2 * frequency * sin(frequency * x.y), REAL(0));
-        return root2 * cos(frequency * x.y);
+        cosine_and_sine(frequency * x.y, cosine, sine);
+        slope = vec3(REAL(0), -root2 * frequency * sine, REAL(0));
+        return root2 * cosine;
     }
     const real radius = sqrt(x.x * x.x + x.z * x.z) + REAL(1e-12);
-    slope = -root2 * frequency * sin(frequency * radius) / radius * vec3(x.x, REAL(0), x.z);
-    return root2 * cos(frequency * radius);
+    cosine_and_sine(frequency * radius, cosine, sine);
+    slope = -root2 * frequency * sine / radius * vec3(x.x, REAL(0), x.z);
+    return root2 * cosine;
 }
 
 /// The level before the longest wave: of it, so much is left, and of the next one the rest.
@@ -81,13 +98,20 @@ FORMULA vec3 pattern_warped(real warp, real wavelength, vec3 x, OUT(vec3) turned
     for (int i = 0; i < 2; ++i) {
         const real frequency = REAL(2) * PI * exp2(real(first + i));
         const real reach = REAL(0.4) * warp * wavelength * (i == 0 ? left : REAL(1) - left);
+        vec3 directions[9];
+        real angles[9];
+        real cosines[9];
+        real sines[9];
         for (int k = 0; k < 9; ++k) {
-            vec3 direction;
             real phase;
-            pattern_wave(first + i, 8 + k, direction, phase);
-            const real angle = frequency * dot(direction, x) + phase;
-            const real move = reach * cos(angle);
-            const vec3 slope = -reach * frequency * sin(angle) * direction;
+            pattern_wave(first + i, 8 + k, directions[k], phase);
+            angles[k] = frequency * dot(directions[k], x) + phase;
+        }
+        for (int k = 0; k < 9; ++k)
+            cosine_and_sine(angles[k], cosines[k], sines[k]);
+        for (int k = 0; k < 9; ++k) {
+            const real move = reach * cosines[k];
+            const vec3 slope = -reach * frequency * sines[k] * directions[k];
             if (k < 3) {
                 moved.x += move;
                 turned_x += slope;

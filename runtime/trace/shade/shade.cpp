@@ -297,6 +297,7 @@ bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit, const Know
         // A pixel that looks along the ground sees a long piece of it.
         const double footprint = least_distance(place, 1) / std::max(std::abs(ray.direction.y), 1e-3);
         const PatternValue at = pattern_at(material.pattern, 1, footprint, place);
+        work_ += RayWork::pattern_wave * material.pattern.waves();
         hit.rgb = pattern_colour(material.pattern, material.rgb, at.value);
         if (ray.direction.y > 0) hit.normal = -hit.normal;
         hit.normal = bumped(hit.normal, at.relief, material.pattern.bump, ray.direction);

@@ -137,6 +137,7 @@ void Traversal::show_best(SurfaceHit& hit) {
         for (const std::uint32_t edge : way_)
             append_to_path(edge);
     surface_at_best(hit);
+    more_work_ += RayWork::pattern_wave * hit.material->pattern.waves();
 }
 
 bool Traversal::meets_any(const Ray& ray, const RayRange& range) {

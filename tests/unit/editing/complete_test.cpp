@@ -22,7 +22,7 @@ std::string offered(const std::string& name, const std::string& text, char mark 
 
 TEST(Complete, KeywordsOfTheBlockAround) {
     EXPECT_EQ(offered("m.rifs", "^"), "rifs main use orbit camera light background ground material steps let "
-                                      "inner sky film haze");
+                                      "inner sky film haze preset");
     EXPECT_EQ(offered("m.rifs", "rifs a { co^ }"), "codes control condense");
     EXPECT_EQ(offered("m.rifs", "rifs a { map b { tra^ } }"), "translate");
     EXPECT_EQ(offered("m.rifs", "rifs a { map b { scale 1/2 t^ } }"), "translate tint terminal tan");

@@ -83,6 +83,10 @@ inline float texels(uint i) {
 inline float hypotenuse(float x, float y) {
     return std::hypot(x, y);
 }
+inline void cosine_and_sine(float angle, float& cosine, float& sine) {
+    cosine = std::cos(angle);
+    sine = std::sin(angle);
+}
 inline bool is_finite(vec3 v) {
     return !any(isnan(v)) && !any(isinf(v));
 }

@@ -26,7 +26,7 @@ const std::vector<OptionGroup>& option_groups() {
          {"--size", "--engine", "--device", "--quality", "--antialias", "--plain-light", "--bits", "--tile",
           "--watch"}},
         {"Camera", {"--camera", "--at", "--zoom", "--eye"}},
-        {"Model", {"--steps", "--set", "--seed"}},
+        {"Model", {"--steps", "--set", "--preset", "--seed"}},
         {"Detail and cost", {"--error", "--error-world", "--work", "--memory", "--threads"}},
         {"graftal's engines", {"--progressive", "--no-progressive", "--samples", "--noise", "--aovs"}},
         {"POV-Ray", {"--keep", "--visible-only"}},

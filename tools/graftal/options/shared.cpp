@@ -102,6 +102,9 @@ void add_common(CLI::App& app, Options& options) {
                                                       "and seed (may be repeated)")
         ->allow_extra_args(false)
         ->type_name(sweeps ? "NAME=VALUE[..VALUE[:STEP]]" : "NAME=VALUE");
+    app.add_option("--preset", compile.lower.preset,
+                   "Set what this 'preset' of the model sets; --set comes before it")
+        ->type_name("NAME");
     add_seed(app, options);
     add_value(
         app, "--root", "FOLDER",

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/primitives/part_size.h"
+#include "compiler/support/formula_words.h"
 
 namespace graftal {
 namespace {
@@ -64,6 +65,18 @@ TEST(Patterns, SlopesAreThoseOfDifferences) {
             // Folds have no slope, and a difference across one is none.
             EXPECT_LE(far_off, 2);
         }
+}
+
+TEST(Patterns, CosinesAreThoseOfTheLibrary) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> exponent(-6, 6);
+    for (int i = 0; i < 20'000; ++i) {
+        const double angle = (i % 2 ? 1 : -1) * std::pow(10, exponent(random));
+        double cosine = 0, sine = 0;
+        formulas::cosine_and_sine(angle, cosine, sine);
+        ASSERT_NEAR(cosine, std::cos(angle), 2e-9) << angle;
+        ASSERT_NEAR(sine, std::sin(angle), 2e-9) << angle;
+    }
 }
 
 TEST(Patterns, ValuesLieAboutTheMiddle) {

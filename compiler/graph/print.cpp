@@ -16,16 +16,25 @@ class Printer {
   public:
     explicit Printer(const Graph& graph) : graph_(graph) {}
 
+    std::string scenery() && {
+        print_scenery();
+        return std::move(out_);
+    }
+
     std::string run() && {
-        for (const Material& material : graph_.materials)
-            print_material(material);
-        print_settings();
+        print_scenery();
         for (ObjectId id = 0; id < graph_.objects.size(); ++id)
             if (!graph_.objects[id].primitive) print_object(id);
         return std::move(out_);
     }
 
   private:
+    void print_scenery() {
+        for (const Material& material : graph_.materials)
+            print_material(material);
+        print_settings();
+    }
+
     void print_numbers(std::string_view key, std::initializer_list<double> numbers) {
         out_ += numbers_line(key, std::span(numbers.begin(), numbers.size()));
     }
@@ -230,6 +239,10 @@ class Printer {
 
 std::string print(const Graph& graph) {
     return Printer(graph).run();
+}
+
+std::string print_scenery(const Graph& graph) {
+    return Printer(graph).scenery();
 }
 
 } // namespace graftal

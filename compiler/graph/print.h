@@ -11,4 +11,7 @@ namespace graftal {
 /// model states them. Requires a verified graph. Deterministic, O(graph).
 std::string print(const Graph& graph);
 
+/// Its materials and settings alone, as all languages write them.
+std::string print_scenery(const Graph& graph);
+
 } // namespace graftal

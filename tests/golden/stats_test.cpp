@@ -53,6 +53,38 @@ TEST_F(Stats, OfThePoundSignAreThoseOfThePaper) {
     }
 }
 
+/// A model as a recurrent IFS has the same limit: dimension, bounds, rate and picture.
+TEST_F(Stats, OfModelsPrintedAsRifsAreTheirs) {
+    for (const char* scene :
+         {"hart/pound_sign.rifs", "ifs/fern.rifs", "ifs/graph_directed.rifs", "ifs/expanding_edge.rifs",
+          "limits/tree.lsys", "limits/gosper.lsys", "hart/sierpinski.inst", "ifs/koch_curve.rifs"}) {
+        SCOPED_TRACE(scene);
+        const std::string model = GRAFTAL_SOURCE_DIR "/scenes/" + std::string(scene);
+        const RunResult printed = graftal("print --as rifs " + model);
+        ASSERT_EQ(printed.status, 0) << printed.err;
+        write("copy.rifs", printed.out);
+        const Json before = stats(model), after = stats(path("copy.rifs"));
+        if (before["dimension"].is_null())
+            EXPECT_TRUE(after["dimension"].is_null());
+        else
+            EXPECT_NEAR(before["dimension"].get<double>(), after["dimension"].get<double>(), 1e-9);
+        for (const char* corner : {"min", "max"})
+            for (int axis = 0; axis < 3; ++axis)
+                EXPECT_NEAR(before["bounds"][corner][axis].get<double>(),
+                            after["bounds"][corner][axis].get<double>(), 1e-9);
+        EXPECT_EQ(after["contraction"]["verdict"], "proved");
+    }
+    // Four maps again, and the digraph of the paper.
+    const std::string sign = graftal("print --as rifs " + pound_sign).out;
+    EXPECT_THAT(sign, ::testing::HasSubstr("follow {"));
+    const std::string fern = graftal("print --as rifs " GRAFTAL_SOURCE_DIR "/scenes/ifs/fern.rifs").out;
+    EXPECT_EQ(std::count(fern.begin(), fern.end(), '{'), 5) << fern;
+    const RunResult elm = graftal("print --as rifs " GRAFTAL_SOURCE_DIR "/scenes/hart/elm.inst");
+    EXPECT_EQ(elm.status, 1);
+    EXPECT_THAT(elm.err,
+                ::testing::HasSubstr("no recurrent iterated function system: nothing in it contains itself"));
+}
+
 /// Boxes that the unfolding meets, against dimensions that are known.
 TEST_F(Stats, BoxesHaveTheDimensionOfTheSet) {
     struct Known {

@@ -191,10 +191,18 @@ void add_after(CLI::App& app, Options& options, const std::string& verb) {
 void add_print(CLI::App& app, Options& options) {
     add_model(app, options);
     add_after(app, options, "Print");
+    add_value(
+        app, "--as", "LANGUAGE", "Language of the text: inst (default), or rifs: maps and a control digraph",
+        "inst or rifs",
+        [](const std::string& text) {
+            return text == "inst" || text == "rifs" ? std::optional(text == "rifs") : std::nullopt;
+        },
+        [&](bool rifs) { options.as_rifs = rifs; });
     add_inspecting_work(app, options);
     add_common(app, options);
     app.footer("Examples:\n"
                "  graftal print fern.rifs > fern.inst     # the same model in the instancing language\n"
+               "  graftal print scenes/limits/tree.lsys --as rifs > tree.rifs\n"
                "  graftal print fern.rifs --after drop_unreachable");
 }
 

@@ -74,6 +74,7 @@ struct Options {
     bool json = false;
     bool check = false; ///< of `format`: write nothing
     bool boxes = false; ///< of `stats`
+    bool as_rifs = false; ///< of `print`
     double threshold = 0;
     bool in_parts = false; ///< the picture of `render` may be larger than one that is drawn at once
 };

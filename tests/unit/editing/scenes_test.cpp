@@ -40,7 +40,7 @@ std::vector<Scene> scenes() {
 
 /// The graph after few steps, where that is soon made.
 std::optional<Graph> lowered(const std::string& path, const std::string& text) {
-    constexpr double seconds = 0.2; // counted: the same models are compared on each machine
+    constexpr double seconds = 0.03; // counted: the same models are compared on each machine
     StageWork work(seconds);
     LowerOptions options;
     options.steps = 3;

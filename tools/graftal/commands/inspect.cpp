@@ -4,6 +4,7 @@
 
 #include "compiler/graph/emit_dot.h"
 #include "compiler/graph/print.h"
+#include "compiler/graph/print_rifs.h"
 #include "compiler/rifs/orbit_model.h"
 #include "compiler/support/printable.h"
 #include "runtime/system/file.h"
@@ -85,8 +86,19 @@ int run_print(const Options& options) {
     CommandSession session(options, options.operands.front());
     const std::shared_ptr<const AnalysedModel> model =
         session.analysed(inspecting(options), compilation, true);
+    std::optional<std::string> rifs;
+    if (model && options.as_rifs) {
+        std::string why;
+        rifs = print_rifs(model->graph, model->components, why);
+        if (!rifs)
+            compilation.diagnostics
+                .error(model->graph.objects[model->graph.root].span,
+                       "this model is no recurrent iterated function system: " + why)
+                .with_hint("in an L-system 'steps infinite' draws the limit, which may be one");
+    }
     const int status = conclude(options, compilation);
-    return model && status == exit_done ? print_output(print(model->graph)) : status;
+    if (!model || status != exit_done) return status;
+    return print_output(rifs ? *rifs : print(model->graph));
 }
 
 int run_graph(const Options& options) {

@@ -15,6 +15,7 @@
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
 #include "compiler/lsys/compile/grammar.h"
+#include "compiler/lsys/derive/written_word.h"
 #include "compiler/lsys/drawing.h"
 #include "compiler/lsys/turtle/model_placer.h"
 #include "compiler/support/counter_random.h"
@@ -352,6 +353,10 @@ class LsysLowering {
                                  const std::map<SymbolId, Model>& models, std::optional<unsigned> steps) {
         const LsysBlock& source = *block.source;
         const LowerOptions& options = lowering_.options;
+        if (options.word && is_root(block)) {
+            take_word(block, grammar, steps);
+            return std::nullopt;
+        }
         std::optional<LsysDrawing> drawing = draw_lsys(grammar, placer(models),
                                                        {.steps = steps,
                                                         .share = share_of_step(block, grammar),
@@ -378,6 +383,20 @@ class LsysLowering {
         }
         if (is_idle) warn_of_no_steps(source);
         return add_root(source, std::move(*drawing));
+    }
+
+    /// The word of the root model, for its notes.
+    void take_word(const Block& block, const LsysGrammar& grammar, std::optional<unsigned> steps) {
+        constexpr std::uint64_t most_written = 5'000'000;
+        if (steps)
+            lowering_.notes.word = written_word(grammar, *steps, seed_of(grammar),
+                                                std::min(most_written, lowering_.options.max_modules),
+                                                &lowering_.meter, diagnostics_);
+        else
+            diagnostics_
+                .error(block.source->steps->span,
+                       fmt::format("'lsys {}' draws a limit, which has no word", block.source->name.text))
+                .with_hint("give '--steps N' for the word after so many steps");
     }
 
     static std::map<SymbolId, std::size_t> inner_counts(const std::map<SymbolId, Model>& models) {

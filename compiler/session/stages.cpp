@@ -170,7 +170,7 @@ std::optional<LoweredModel> lower_source(const Source& source, const LowerOption
     if (help.control.work) model.work_seconds = help.control.work->seconds();
     const bool draws_nothing =
         model.notes.derivation && options.may_draw_nothing && !diagnostics.has_errors();
-    if (!model.graph && !model.notes.orbit && !draws_nothing) return std::nullopt;
+    if (!model.graph && !model.notes.orbit && !model.notes.word && !draws_nothing) return std::nullopt;
     return model;
 }
 

@@ -198,10 +198,13 @@ void add_print(CLI::App& app, Options& options) {
             return text == "inst" || text == "rifs" ? std::optional(text == "rifs") : std::nullopt;
         },
         [&](bool rifs) { options.as_rifs = rifs; });
+    app.add_flag("--word", options.render.compile.lower.word,
+                 "Print the string that an L-system derives, in place of the graph");
     add_inspecting_work(app, options);
     add_common(app, options);
     app.footer("Examples:\n"
                "  graftal print fern.rifs > fern.inst     # the same model in the instancing language\n"
+               "  graftal print scenes/abop/fig1_24a.lsys --word --steps 2\n"
                "  graftal print scenes/limits/tree.lsys --as rifs > tree.rifs\n"
                "  graftal print fern.rifs --after drop_unreachable");
 }

@@ -69,6 +69,20 @@ Status write_svg(const std::string& dot, const std::string& output, const Cancel
     return pending.commit();
 }
 
+/// The string of an L-system after its steps.
+int print_word(const Options& options) {
+    Compilation compilation;
+    StageOptions compile = inspecting(options, true);
+    compile.lower.may_be_orbit = true;
+    CommandSession session(options, options.operands.front());
+    const std::shared_ptr<const LoweredModel> lowered = session.lowered(compile, compilation);
+    const bool is_lsys = lowered && lowered->notes.word;
+    if (lowered && !is_lsys && compilation.status.ok() && !compilation.diagnostics.has_errors())
+        compilation.diagnostics.error(Span(), "only L-systems have a word");
+    const int status = conclude(options, compilation);
+    return status == exit_done && is_lsys ? print_output(*lowered->notes.word + "\n") : status;
+}
+
 } // namespace
 
 int run_check(const Options& options) {
@@ -82,6 +96,7 @@ int run_check(const Options& options) {
 }
 
 int run_print(const Options& options) {
+    if (options.render.compile.lower.word) return print_word(options);
     Compilation compilation;
     CommandSession session(options, options.operands.front());
     const std::shared_ptr<const AnalysedModel> model =

@@ -1,0 +1,53 @@
+#include "compiler/lsys/derive/written_word.h"
+
+#include <cctype>
+#include <string_view>
+
+#include "compiler/lsys/derive/deriver.h"
+#include "compiler/lsys/derive/queries.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+bool is_long_name(std::string_view symbol) {
+    const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+    return symbol.size() > 1 && in_name(symbol.back());
+}
+
+void append_module(const LsysGrammar& grammar, const ModuleTable& modules, ModuleId id, std::string& text) {
+    const std::string& symbol = grammar.symbols[modules.symbol(id)];
+    const bool apart = is_long_name(symbol) && !text.empty() && text.back() != ' ';
+    if (apart) text += ' ';
+    text += symbol;
+    const std::span<const double> parameters = modules.parameters(id);
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+        text += (i == 0 ? "(" : ",") + shortest(parameters[i]);
+    if (!parameters.empty())
+        text += ')';
+    else if (is_long_name(symbol))
+        text += ' ';
+}
+
+} // namespace
+
+std::optional<std::string> written_word(const LsysGrammar& grammar, unsigned steps, std::uint64_t seed,
+                                        std::uint64_t max_modules, WorkMeter* meter,
+                                        Diagnostics& diagnostics) {
+    LsysRewriter rewriter(grammar, diagnostics, seed, meter);
+    if (!rewriter.prepare(steps)) return std::nullopt;
+    LsysQueries queries(rewriter, diagnostics, seed);
+    LsysDeriver deriver(rewriter, diagnostics, seed, max_modules);
+    if (grammar.has_queries())
+        deriver.after_each_step(
+            [&](std::uint32_t step, ModuleString& word) { return queries.answer(step, word); });
+    const std::optional<ModuleString> word = deriver.derive(steps);
+    if (!word) return std::nullopt;
+    std::string text;
+    for (const ModuleId id : *word)
+        append_module(grammar, rewriter.modules(), id, text);
+    return text;
+}
+
+} // namespace graftal

@@ -1,0 +1,71 @@
+// Words as text: published ones, and words that read back as axioms.
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "compiler/languages/lower.h"
+
+namespace graftal {
+namespace {
+
+struct Word {
+    std::string text, messages;
+};
+
+Word word_of(const std::string& model, std::optional<unsigned> steps = {}) {
+    LowerOptions options;
+    options.word = true;
+    options.steps = steps;
+    SourceMap sources;
+    Diagnostics diagnostics;
+    const LoweredText lowered = lower_text("m.lsys", model, options, sources, diagnostics);
+    EXPECT_FALSE(lowered.graph);
+    return {lowered.notes.word.value_or(""), diagnostics.render(sources)};
+}
+
+TEST(LsysWord, IsThatOfTheBook) {
+    // ABOP, section 1.2: the filament Anabaena catenula.
+    const std::string anabaena = "lsys a {\n  modules ar al br bl\n  axiom ar\n  steps 4\n  ar -> al br\n"
+                                 "  al -> bl ar\n  br -> ar\n  bl -> al\n}\n";
+    EXPECT_EQ(word_of(anabaena, 0).text, "ar ");
+    EXPECT_EQ(word_of(anabaena, 2).text, "bl ar ar ");
+    EXPECT_EQ(word_of(anabaena).text, "bl ar bl ar ar bl ar ar ");
+    // Fig. 1.24a, and section 1.10 with parameters.
+    const std::string weed = "lsys a {\n  axiom F\n  steps 1\n  F -> F[+F]F[-F]F\n}\n";
+    EXPECT_EQ(word_of(weed).text, "F[+F]F[-F]F");
+    const std::string halves =
+        "lsys a {\n  axiom A(1)\n  steps 2\n  A(s) -> F(s)[+(90)A(s/2)]-(30)F(0.1)\n}\n";
+    EXPECT_EQ(word_of(halves).text, "F(1)[+(90)F(0.5)[+(90)A(0.25)]-(30)F(0.1)]-(30)F(0.1)");
+}
+
+TEST(LsysWord, ReadsBackAsAnAxiom) {
+    const std::string rules = "  A(l,w) : l > 0.2 -> !(w)F(l)[&(40)B(l*0.6,w*0.7)]/(137.5)A(l*0.9,w*0.7)\n"
+                              "  B(l,w) -> !(w)F(l)[-(45)C(l*0.6,w*0.7)]C(l*0.9,w*0.7)\n"
+                              "  C(l,w) -> !(w)F(l)[+(45)B(l*0.6,w*0.7)]B(l*0.9,w*0.7)\n";
+    const std::string grown = "lsys a {\n  steps 6\n  axiom A(1,0.1)\n" + rules + "}\n";
+    const Word word = word_of(grown);
+    ASSERT_EQ(word.messages, "");
+    const std::string copy = "lsys a {\n  steps 0\n  axiom " + word.text + "\n" + rules + "}\n";
+    const auto drawn = [](const std::string& model) {
+        SourceMap sources;
+        Diagnostics diagnostics;
+        const LoweredText lowered = lower_text("m.lsys", model, {}, sources, diagnostics);
+        EXPECT_TRUE(lowered.notes.derivation) << diagnostics.render(sources);
+        if (!lowered.notes.derivation) return std::string();
+        return lowered.notes.derivation->modules + " " + lowered.notes.derivation->segments;
+    };
+    EXPECT_EQ(drawn(grown), drawn(copy));
+    EXPECT_EQ(word_of(copy).text, word.text);
+}
+
+TEST(LsysWord, SaysWhereThereIsNone) {
+    const std::string limit = "lsys a {\n  axiom A\n  steps infinite\n  A -> F(1)[+(30)A]\n}\n";
+    EXPECT_NE(word_of(limit).messages.find("draws a limit, which has no word"), std::string::npos);
+    EXPECT_EQ(word_of(limit, 1).text, "F(1)[+(30)A]");
+    const std::string doubling = "lsys a {\n  axiom A\n  steps 60\n  A -> AA\n}\n";
+    EXPECT_NE(word_of(doubling).messages.find("more than 5000000 modules"), std::string::npos);
+}
+
+} // namespace
+} // namespace graftal

@@ -242,4 +242,11 @@ View view_through(const Camera& camera, const CameraSetting& setting, const Grap
     return view;
 }
 
+void clear_background(View& view) {
+    view.sky.zenith = view.sky.horizon = Rgb(0.0);
+    view.shows_sky_light = false;
+    view.haze.reset();
+    view.catcher.reset();
+}
+
 } // namespace graftal

@@ -141,4 +141,8 @@ View view_through(const Camera& camera, const CameraSetting& setting, const Grap
                   ImageSize size, const std::vector<Rgb>& colours, DefaultLight light = DefaultLight::studio,
                   CloudPictures* clouds = nullptr);
 
+/// Leaves nothing behind the model but black: no sky that is seen, no haze, and no paper of a studio. Light
+/// and ground stay.
+void clear_background(View& view);
+
 } // namespace graftal

@@ -23,6 +23,7 @@ struct ViewOptions {
     double turn_deg = 0; ///< with a framing: how far the camera has gone round the model
     Quality quality = Quality::normal;
     DefaultLight light = DefaultLight::studio;
+    bool transparent = false; ///< nothing stands behind the model (clear_background())
     bool operator==(const ViewOptions&) const = default;
 };
 

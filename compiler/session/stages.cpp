@@ -245,6 +245,7 @@ std::optional<ViewedModel> look_at(std::shared_ptr<const AnalysedModel> model, s
     if (!viewed) return std::nullopt;
     viewed->view.quality = options.quality;
     warn_of_no_lens(*viewed, options, diagnostics);
+    if (options.transparent) clear_background(viewed->view);
     return viewed;
 }
 

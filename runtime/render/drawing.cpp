@@ -29,7 +29,7 @@ Drawing::Drawing(const View& view, const RenderOptions& options, PictureFilm& fi
     picture_.height = window_.height;
     picture_.channels = 3;
     picture_.pixels.resize(3 * pixels());
-    if (options.aovs) aovs_.resize(pixels());
+    if (options.needs_aovs()) aovs_.resize(pixels());
     film.begin({window_, picture_.channels, view.film});
 }
 
@@ -45,7 +45,7 @@ Status Drawing::finish(const TraceModel& model, const Sampling& finest, double s
     work_ = done_ + finest.samples_a_pixel();
     report_.finished = false;
     std::vector<NoiseMeter> meters;
-    if (options_.progressive && finest.most_samples > 0 && !options_.aovs && has_room_for_samples()) {
+    if (options_.progressive && finest.most_samples > 0 && !options_.needs_aovs() && has_room_for_samples()) {
         meters.resize(pixels());
         samples_ = &meters;
         Sampling round = finest;
@@ -107,7 +107,7 @@ std::size_t Drawing::trace(PictureTracer& tracer, const Sampling& sampling) {
         film_.tile(tile, picture_, pass_);
         tell((done_ + share * (sampling.samples_a_pixel() - done)) / work_);
     };
-    tracer.trace(sampling, control, window_, picture_, options_.aovs ? &aovs_ : nullptr);
+    tracer.trace(sampling, control, window_, picture_, options_.needs_aovs() ? &aovs_ : nullptr);
     done_ += sampling.samples_a_pixel() - done;
     if (samples_) samples_done_ = sampling.samples_a_pixel();
     report_.seconds += watch.seconds();

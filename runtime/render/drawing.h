@@ -43,7 +43,7 @@ class Drawing {
     /// Returns the number of finished pixels: all, unless it was interrupted.
     std::size_t trace(PictureTracer& tracer, const Sampling& sampling);
     void tell(double fraction) const;
-    const AovPicture* aovs() const { return options_.aovs ? &aovs_ : nullptr; }
+    const AovPicture* aovs() const { return options_.needs_aovs() ? &aovs_ : nullptr; }
 
     const RenderOptions& options_;
     PictureFilm& film_;

@@ -74,7 +74,7 @@ class GpuDrawing {
             tell(share);
             return !cancel_.raised();
         };
-        if (options_.aovs) {
+        if (options_.needs_aovs()) {
             double lost = 0;
             GpuPicture aovs(gpu, view_.size, window_, {lattice, options_.sequence, true});
             Status status = aovs.prepare(model, frames);
@@ -105,7 +105,7 @@ class GpuDrawing {
             if (last || options_.progressive) {
                 note(seen, lattice > 0 ? 0 : count, drawing.seconds());
                 film_.tile(window_, picture_, pass_);
-                if (Status shown = film_.end(pass_++, picture_, options_.aovs ? &aovs_ : nullptr);
+                if (Status shown = film_.end(pass_++, picture_, options_.needs_aovs() ? &aovs_ : nullptr);
                     !shown.ok())
                     return shown;
                 if (report_.pictures++ == 0) report_.first_picture_seconds = watch_.seconds();

@@ -279,6 +279,8 @@ constinit const Engine povray_engine = {
         if (options.tile)
             return "--tile needs '--engine native': POV-Ray smooths the edges of a part otherwise than those "
                    "of the whole";
+        if (options.compile.view.transparent)
+            return "--transparent needs '--engine native': POV-Ray's pictures have a background";
         if (options.aovs) return "--aovs needs '--engine native': POV-Ray gives colours only";
         return options.progressive
                    ? "--progressive needs '--engine native': POV-Ray shows nothing before its "

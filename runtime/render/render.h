@@ -45,6 +45,8 @@ struct RenderOptions : PictureWishes {
     int threads = 0;               ///< 0: as many as the engine likes
     std::size_t device = 0;        ///< of the GPU engine: a number of gpu_devices()
     bool aovs = false;             ///< of an EXR: further channels (aov_channels.h)
+    /// Whether the picture needs what its samples meet, and not only their light.
+    bool needs_aovs() const { return aovs || compile.view.transparent; }
     bool progressive = false;      ///< write coarse pictures first, each in place of the last
     bool unconfined = false;       ///< PovrayJob::unconfined
     std::string keep;              ///< a directory for the scene, to stay; empty: a temporary one

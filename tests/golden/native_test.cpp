@@ -80,6 +80,42 @@ TEST_F(Native, LinearPngAndExrHoldTheSameValues) {
     EXPECT_GT(differing("a.png", "b.png"), 100u) << "not linear";
 }
 
+/// A picture without a background, put over a plain one, is the picture with that background.
+TEST_F(Native, TransparentPicturesAreThoseBeforeAnyBackground) {
+    const auto model = [](const std::string& background) {
+        return "light { sun: 1, 2, 3 }\ncamera { location: 0, 0.5, 6 }\n" + background +
+               "canonical object twig { union: cylinder\n scale: 0.05, 1, 0.05 }\n"
+               "object a { union: sphere\n scale: 0.7\n tint: 0.9, 0.3, 0.2, 1\n union: twig\n"
+               " translate: 0.9, -0.5, 0 }\n";
+    };
+    write("before.inst", model("background: 0.2, 0.4, 0.6\n"));
+    const std::string options = " --engine native --size 64x48 --samples 16 --noise 0";
+    for (const char* name : {"whole.exr", "clear.exr --transparent", "clear.png --transparent --bits 16"}) {
+        const RunResult drawn = graftal("render before.inst" + options + " -o " + name);
+        ASSERT_EQ(drawn.status, 0) << drawn.err;
+    }
+    const Image whole = picture("whole.exr"), clear = picture("clear.exr"), straight = picture("clear.png");
+    ASSERT_EQ(clear.channels, 4);
+    ASSERT_EQ(straight.channels, 4);
+    const double behind[] = {0.2, 0.4, 0.6};
+    int edges = 0, empty = 0;
+    for (std::size_t i = 0; i < whole.pixels.size() / 3; ++i) {
+        const double alpha = clear.pixels[4 * i + 3];
+        edges += alpha > 0 && alpha < 1;
+        empty += alpha == 0;
+        EXPECT_NEAR(straight.pixels[4 * i + 3], alpha, 1e-4);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double light = clear.pixels[4 * i + k];
+            EXPECT_NEAR(light + (1 - alpha) * behind[k], whole.pixels[3 * i + k], 2e-5);
+            const float shown = srgb_encoded(static_cast<float>(alpha > 0 ? light / alpha : 0));
+            EXPECT_NEAR(straight.pixels[4 * i + k], shown, 1e-3);
+        }
+    }
+    EXPECT_GT(edges, 50);
+    EXPECT_GT(empty, 500);
+    EXPECT_EQ(graftal("render before.inst --engine povray --transparent -o a.png").status, 2);
+}
+
 TEST_F(Native, ReadsTheModelFromStandardInput) {
     ASSERT_EQ(render(gasket + small + "-o a.png").status, 0);
     ASSERT_EQ(render("- -o b.png" + small + " <" + gasket).status, 0);

@@ -65,6 +65,10 @@ void add_render(CLI::App& app, Options& options) {
     app.add_flag("--aovs", options.render.aovs,
                  "With an EXR: write the channels A, coverage, Z, normal, albedo, id and "
                  "levels too");
+    app.add_flag(
+        "--transparent", options.render.compile.view.transparent,
+        "Leave the background clear: alpha is straight in a PNG, premultiplied in an EXR. Haze and the "
+        "studio's paper are left out, and a ground is not");
     app.add_flag("--watch", options.watch,
                  "Draw again whenever the model changes or a file that it uses, until "
                  "Ctrl-C");

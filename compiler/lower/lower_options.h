@@ -21,6 +21,7 @@
 namespace graftal {
 
 struct OrbitModel;
+struct Plant;
 class ParsedFiles;
 
 struct LowerOptions {
@@ -35,7 +36,9 @@ struct LowerOptions {
     /// Files that a model names, and the model itself, must lie in this folder, with all symbolic links
     /// resolved. Where it is "", they may lie anywhere.
     std::string root;
-    bool word = false;  ///< of the root model, an L-system, its word in place of a graph
+    /// Of the root model, an L-system, what is wanted in place of a graph.
+    enum class InPlace : std::uint8_t { nothing, word, plant };
+    InPlace in_place = InPlace::nothing;
     bool exact = false; ///< L-systems are derived module by module: one honest random tree
     std::uint64_t max_modules = 50'000'000; ///< of a derived word
     std::uint64_t run_from = 4096; ///< least modules of a derived word that makes a run, if little repeats
@@ -83,7 +86,8 @@ struct ModelParameter {
 /// Facts that lowering learns beside the graph.
 struct LowerNotes {
     std::optional<Derivation> derivation;         ///< of an L-system
-    std::optional<std::string> word;              ///< that LowerOptions::word asks for (written_word.h)
+    std::optional<std::string> word;              ///< that LowerOptions::in_place asks for
+    std::shared_ptr<const Plant> plant;           ///< or null; likewise
     std::shared_ptr<const OrbitModel> orbit;      ///< or null; what is one has no graph
     std::map<std::string, FileStamp> meshes = {}; ///< by path: the files of meshes, as they were when read
     std::vector<ModelParameter> parameters = {};  ///< of the root model, in the order of its text

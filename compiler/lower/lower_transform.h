@@ -51,7 +51,8 @@ bool takes_count(PrimitiveKind kind, std::size_t count);
 std::string counts_taken(PrimitiveKind kind);
 
 /// The map of one line. Errors: singular maps (but not of `projection`, which must only not vanish), zero
-/// axes, points that lie on one line or in one plane, numbers that are not finite. `matrix` and `projection` are taken to the last bit.
+/// axes, points that lie on one line or in one plane, numbers that are not finite. `matrix` and `projection`
+/// are taken to the last bit.
 ///
 /// Two factors of a scale are those of x and y; z gets their geometric mean, so that flat figures keep a
 /// regular map that is a similarity where the flat one was.

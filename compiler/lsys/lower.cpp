@@ -353,7 +353,7 @@ class LsysLowering {
                                  const std::map<SymbolId, Model>& models, std::optional<unsigned> steps) {
         const LsysBlock& source = *block.source;
         const LowerOptions& options = lowering_.options;
-        if (options.word && is_root(block)) {
+        if (options.in_place != LowerOptions::InPlace::nothing && is_root(block)) {
             take_word(block, grammar, steps);
             return std::nullopt;
         }
@@ -385,18 +385,26 @@ class LsysLowering {
         return add_root(source, std::move(*drawing));
     }
 
-    /// The word of the root model, for its notes.
+    /// The word of the root model, or its modules, for the notes.
     void take_word(const Block& block, const LsysGrammar& grammar, std::optional<unsigned> steps) {
         constexpr std::uint64_t most_written = 5'000'000;
-        if (steps)
-            lowering_.notes.word = written_word(grammar, *steps, seed_of(grammar),
-                                                std::min(most_written, lowering_.options.max_modules),
-                                                &lowering_.meter, diagnostics_);
-        else
+        if (!steps) {
             diagnostics_
                 .error(block.source->steps->span,
                        fmt::format("'lsys {}' draws a limit, which has no word", block.source->name.text))
                 .with_hint("give '--steps N' for the word after so many steps");
+            return;
+        }
+        const std::uint64_t seed = seed_of(grammar),
+                            most = std::min(most_written, lowering_.options.max_modules);
+        LsysRewriter rewriter(grammar, diagnostics_, seed, &lowering_.meter);
+        std::optional<ModuleString> word = derived_word(rewriter, *steps, seed, most, diagnostics_);
+        if (!word) return;
+        const DerivedWord derived{rewriter, std::move(*word), *steps};
+        if (lowering_.options.in_place == LowerOptions::InPlace::word)
+            lowering_.notes.word = written_word(derived);
+        else if (std::optional<Plant> plant = plant_of(derived, seed, diagnostics_))
+            lowering_.notes.plant = std::make_shared<const Plant>(std::move(*plant));
     }
 
     static std::map<SymbolId, std::size_t> inner_counts(const std::map<SymbolId, Model>& models) {

@@ -11,7 +11,7 @@ namespace {
 
 /// Apart from steps and time.
 bool same_options(const LowerOptions& a, const LowerOptions& b) {
-    return a.set == b.set && a.preset == b.preset && a.word == b.word && a.seed == b.seed && a.root == b.root &&
+    return a.set == b.set && a.preset == b.preset && a.in_place == b.in_place && a.seed == b.seed && a.root == b.root &&
            a.exact == b.exact && a.max_modules == b.max_modules && a.run_from == b.run_from &&
            a.max_objects == b.max_objects && a.may_draw_nothing == b.may_draw_nothing &&
            a.may_leave_out_colours == b.may_leave_out_colours && a.may_be_orbit == b.may_be_orbit;
@@ -163,7 +163,7 @@ bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation
                 sources_, findings);
             const Derivation* const derivation =
                 model && model->notes.derivation ? &*model->notes.derivation : nullptr;
-            key.reads_steps = reads_steps_ = !model || derivation || model->notes.word;
+            key.reads_steps = reads_steps_ = !model || derivation || model->notes.word || model->notes.plant;
             key.reads_time = !model || (derivation && derivation->timed);
             key.limited_by_work = !model || model->notes.limited_by_work;
             if (model) meshes_ = model->notes.meshes;

@@ -170,7 +170,8 @@ std::optional<LoweredModel> lower_source(const Source& source, const LowerOption
     if (help.control.work) model.work_seconds = help.control.work->seconds();
     const bool draws_nothing =
         model.notes.derivation && options.may_draw_nothing && !diagnostics.has_errors();
-    if (!model.graph && !model.notes.orbit && !model.notes.word && !draws_nothing) return std::nullopt;
+    const bool has_other = model.notes.orbit || model.notes.word || model.notes.plant;
+    if (!model.graph && !has_other && !draws_nothing) return std::nullopt;
     return model;
 }
 

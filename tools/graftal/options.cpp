@@ -202,8 +202,9 @@ void add_print(CLI::App& app, Options& options) {
             return text == "inst" || text == "rifs" ? std::optional(text == "rifs") : std::nullopt;
         },
         [&](bool rifs) { options.as_rifs = rifs; });
-    app.add_flag("--word", options.render.compile.lower.word,
-                 "Print the string that an L-system derives, in place of the graph");
+    app.add_flag_callback(
+        "--word", [&options] { options.render.compile.lower.in_place = LowerOptions::InPlace::word; },
+        "Print the string that an L-system derives, in place of the graph");
     add_inspecting_work(app, options);
     add_common(app, options);
     app.footer("Examples:\n"

@@ -5,22 +5,14 @@
 #include <vector>
 
 #include "compiler/environment/environment.h"
-#include "compiler/graph/graph.h"
-#include "compiler/lsys/derive/rewriter.h"
-#include "compiler/lsys/turtle/turtle.h"
-#include "compiler/support/counter_random.h"
+#include "compiler/lsys/derive/walk.h"
 
 namespace graftal {
-
-/// The settings of the turtle that a grammar asks for; it draws on `bodies`.
-TurtleContext turtle_context(const LsysGrammar& grammar, TurtleBodies& bodies, Diagnostics& diagnostics);
-/// The state of the turtle at the start, except for its width.
-TurtleState turtle_start(const LsysGrammar& grammar);
 
 /// Answers the queries of a word before the next step is derived. A turtle walks along the word, as it is
 /// interpreted, and meets queries. It puts its place or direction, or what the environment says, into their
 /// parameters (Prusinkiewicz, James and Mech 1994, "Synthetic topiary", section 3).
-class LsysQueries {
+class LsysQueries : private LsysWalk::Listener {
   public:
     /// Both must outlive this. `seed`: of what chance decides.
     LsysQueries(LsysRewriter& rewriter, Diagnostics& diagnostics, std::uint64_t seed);
@@ -38,30 +30,15 @@ class LsysQueries {
         Vec3 place{0.0};
         std::vector<double> values;
     };
-    /// A string that is drawn in place of a module, under way.
-    struct Level {
-        ModuleString string;
-        std::size_t next = 0;
-    };
-
-    bool walk(std::uint32_t step, const ModuleString& word);
-    bool meet(std::uint32_t step, ModuleId module, std::uint32_t birth, std::size_t at, bool in_word);
-    bool step_over(ModuleId module, std::size_t at, bool in_word);
+    void asks(ModuleId module, std::size_t at, bool in_word, const Turtle& turtle) override;
     bool ask_environment();
 
     LsysRewriter& rewriter_;
     const LsysGrammar& grammar_;
-    Diagnostics& diagnostics_;
-    CounterRandom random_;
-    Graph scratch_;
-    TurtleBodies bodies_;
-    TurtleContext context_;
+    LsysWalk walk_;
     std::unique_ptr<GrowthEnvironment> environment_; ///< null: none
     bool failed_ = false;
     std::vector<Met> met_;
-    std::vector<Level> levels_;
-    std::uint64_t chosen_ = 0; ///< interpretations that chance has chosen in this walk
-    std::unique_ptr<Turtle> turtle_;
 };
 
 } // namespace graftal

@@ -32,21 +32,21 @@ void append_module(const LsysGrammar& grammar, const ModuleTable& modules, Modul
 
 } // namespace
 
-std::optional<std::string> written_word(const LsysGrammar& grammar, unsigned steps, std::uint64_t seed,
-                                        std::uint64_t max_modules, WorkMeter* meter,
-                                        Diagnostics& diagnostics) {
-    LsysRewriter rewriter(grammar, diagnostics, seed, meter);
+std::optional<ModuleString> derived_word(LsysRewriter& rewriter, unsigned steps, std::uint64_t seed,
+                                         std::uint64_t max_modules, Diagnostics& diagnostics) {
     if (!rewriter.prepare(steps)) return std::nullopt;
     LsysQueries queries(rewriter, diagnostics, seed);
     LsysDeriver deriver(rewriter, diagnostics, seed, max_modules);
-    if (grammar.has_queries())
+    if (rewriter.grammar().has_queries())
         deriver.after_each_step(
             [&](std::uint32_t step, ModuleString& word) { return queries.answer(step, word); });
-    const std::optional<ModuleString> word = deriver.derive(steps);
-    if (!word) return std::nullopt;
+    return deriver.derive(steps);
+}
+
+std::string written_word(const DerivedWord& derived) {
     std::string text;
-    for (const ModuleId id : *word)
-        append_module(grammar, rewriter.modules(), id, text);
+    for (const ModuleId id : derived.word)
+        append_module(derived.rewriter.grammar(), derived.rewriter.modules(), id, text);
     return text;
 }
 

@@ -15,7 +15,7 @@ struct Word {
 
 Word word_of(const std::string& model, std::optional<unsigned> steps = {}) {
     LowerOptions options;
-    options.word = true;
+    options.in_place = LowerOptions::InPlace::word;
     options.steps = steps;
     SourceMap sources;
     Diagnostics diagnostics;

@@ -96,7 +96,7 @@ int run_check(const Options& options) {
 }
 
 int run_print(const Options& options) {
-    if (options.render.compile.lower.word) return print_word(options);
+    if (options.render.compile.lower.in_place == LowerOptions::InPlace::word) return print_word(options);
     Compilation compilation;
     CommandSession session(options, options.operands.front());
     const std::shared_ptr<const AnalysedModel> model =

@@ -4,6 +4,7 @@
 
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
+#include "runtime/export/plant_files.h"
 #include "tools/graftal/options/shared.h"
 #include "tools/graftal/options/values.h"
 
@@ -32,7 +33,8 @@ std::string formats_text() {
     std::string text = "Formats, by the ending of FILE:\n";
     for (const ExportFormat& format : export_formats())
         text += fmt::format("  {:<6} {}: {}\n", format.extension, format.name, format.summary);
-    return text;
+    return text +
+           fmt::format("  {} the modules of an L-system as data, with parents and places\n", plant_endings());
 }
 
 } // namespace
@@ -87,13 +89,15 @@ void add_export(CLI::App& app, Options& options) {
                "Examples:\n"
                "  graftal export tree.lsys -o tree.obj\n"
                "  graftal export sponge.rifs --steps 3 --unit 20mm -o sponge.stl\n"
-               "  graftal export fern.rifs --error 2 -o fern.ply");
+               "  graftal export fern.rifs --error 2 -o fern.ply\n"
+               "  graftal export plant.lsys -o plant.csv                # its modules, for R or pandas");
 }
 
 std::string complete_export(Options& options) {
     if (options.render.output.empty())
         return fmt::format("name the file with '-o FILE'; its ending says the format: {}", export_endings());
     const ExportFormat* const format = find_export_format(options.render.output);
+    if (!format && find_plant_format(options.render.output)) return {};
     if (!format) return fmt::format("'{}': the name must end in {}", options.render.output, export_endings());
     if (const ExportWish* const wish = find_vain_wish(*format, options.file))
         return fmt::format("--{} is for {}, not for {}", wish->option, endings_with(wish->has),

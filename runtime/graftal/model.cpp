@@ -4,12 +4,14 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "compiler/analysis/counts.h"
+#include "compiler/lower/plant.h"
 #include "compiler/povray/cut/compile.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
@@ -337,6 +339,62 @@ Result<ObjectGraph> Model::graph() {
         const auto model = parts_->session.analysed(parts_->options.compile, compilation, true);
         if (!model) return std::nullopt;
         return listed_graph(model->graph, compilation.status);
+    });
+}
+
+namespace {
+
+/// The notes of a lowering that keeps something in place of a graph.
+std::shared_ptr<const LoweredModel> lowered_in_place(Session& session, StageOptions stages,
+                                                     LowerOptions::InPlace wanted, Compilation& compilation) {
+    stages.lower.in_place = wanted;
+    stages.lower.may_be_orbit = true;
+    std::shared_ptr<const LoweredModel> lowered = session.lowered(stages, compilation);
+    if (!lowered || compilation.diagnostics.has_errors()) return nullptr;
+    if (lowered->notes.word || lowered->notes.plant) return lowered;
+    compilation.diagnostics.error(Span(), "only L-systems have a word and its modules");
+    return nullptr;
+}
+
+PlantTable table_of(const Plant& plant) {
+    PlantTable table;
+    for (const PlantModule& module : plant.modules)
+        table.parameter_count = std::max(table.parameter_count, module.parameters.size());
+    for (const PlantModule& module : plant.modules) {
+        table.names.push_back(plant.names[module.name]);
+        table.parents.push_back(module.parent == PlantModule::none ? -1 : std::int64_t{module.parent});
+        table.branches.push_back(module.branches);
+        table.orders.push_back(module.order);
+        table.ranks.push_back(module.rank);
+        table.ages.push_back(module.age);
+        table.widths.push_back(module.width);
+        for (const auto& [of, vector] : {std::pair(&table.starts, module.start),
+                                         {&table.ends, module.end},
+                                         {&table.headings, module.heading}})
+            of->insert(of->end(), {vector.x, vector.y, vector.z});
+        table.parameters.insert(table.parameters.end(), module.parameters.begin(), module.parameters.end());
+        table.parameters.resize(table.names.size() * table.parameter_count,
+                                std::numeric_limits<double>::quiet_NaN());
+    }
+    return table;
+}
+
+} // namespace
+
+Result<std::string> Model::word() {
+    return parts_->run<std::string>([this](Compilation& compilation) -> std::optional<std::string> {
+        const auto lowered = lowered_in_place(parts_->session, parts_->options.compile,
+                                              LowerOptions::InPlace::word, compilation);
+        return lowered ? lowered->notes.word : std::nullopt;
+    });
+}
+
+Result<PlantTable> Model::plant() {
+    return parts_->run<PlantTable>([this](Compilation& compilation) -> std::optional<PlantTable> {
+        const auto lowered = lowered_in_place(parts_->session, parts_->options.compile,
+                                              LowerOptions::InPlace::plant, compilation);
+        if (!lowered || !lowered->notes.plant) return std::nullopt;
+        return table_of(*lowered->notes.plant);
     });
 }
 

@@ -94,6 +94,18 @@ struct ObjectGraph {
     std::vector<GraphInstance> instances;
 };
 
+/// The modules of the word that an L-system derives, one row each, in its order (docs/export.md).
+struct PlantTable {
+    std::vector<std::string> names;
+    std::vector<std::int64_t> parents; ///< rows; -1 of the first
+    std::vector<bool> branches;        ///< begins a branch of its parent, or follows it on the same axis
+    std::vector<std::int64_t> orders, ranks, ages; ///< an age of -1 is not known
+    std::vector<double> starts, ends, headings;    ///< x, y, z of each
+    std::vector<double> widths;
+    std::size_t parameter_count = 0;
+    std::vector<double> parameters; ///< parameter_count of each; those that a module has not are NaN
+};
+
 /// Points of a model by random iteration.
 struct Points {
     std::vector<float> places;     ///< x, y, z of each
@@ -198,6 +210,9 @@ class GRAFTAL_API Model {
     Result<Stats> stats();
     /// At most 10^7 instances.
     Result<ObjectGraph> graph();
+    /// The string that an L-system derives, before interpretation; at most 5 million modules.
+    Result<std::string> word();
+    Result<PlantTable> plant();
     /// The points that `graftal points -o FILE.ply` writes, as many as were asked for; at most 10^9.
     Result<Points> points(std::uint64_t count);
     /// Draws into memory, by the native engine: the pixels of the `.png` that render_to() writes.

@@ -177,6 +177,29 @@ PYBIND11_MODULE(_graftal, module) {
              [](Model& model, const py::object& progress) {
                  return graph_of(value_of(model, progress, [&] { return model.graph(); }));
              })
+        .def("word",
+             [](Model& model, const py::object& progress) {
+                 return value_of(model, progress, [&] { return model.word(); });
+             })
+        .def("plant",
+             [](Model& model, const py::object& progress) {
+                 PlantTable table = value_of(model, progress, [&] { return model.plant(); });
+                 const auto rows = static_cast<py::ssize_t>(table.names.size()),
+                            parameters = static_cast<py::ssize_t>(table.parameter_count);
+                 py::dict dict;
+                 dict["name"] = table.names;
+                 dict["branches"] = table.branches;
+                 dict["parent"] = array_of(std::move(table.parents), {rows});
+                 dict["order"] = array_of(std::move(table.orders), {rows});
+                 dict["rank"] = array_of(std::move(table.ranks), {rows});
+                 dict["age"] = array_of(std::move(table.ages), {rows});
+                 dict["start"] = array_of(std::move(table.starts), {rows, 3});
+                 dict["end"] = array_of(std::move(table.ends), {rows, 3});
+                 dict["heading"] = array_of(std::move(table.headings), {rows, 3});
+                 dict["width"] = array_of(std::move(table.widths), {rows});
+                 dict["parameters"] = array_of(std::move(table.parameters), {rows, parameters});
+                 return dict;
+             })
         .def("points",
              [](Model& model, std::uint64_t count, const py::object& progress) {
                  Points points = value_of(model, progress, [&] { return model.points(count); });

@@ -160,6 +160,26 @@ class Package(unittest.TestCase):
             np.testing.assert_array_equal(drawn, png(self.path("a.png")))
             self.assertGreater(len(np.unique(drawn)), 10)
 
+    def test_plants_are_the_rows_of_the_program(self):
+        path = scene("abop/fig2_6a.lsys")
+        self.program("export", path, "--steps", "4", "-q", "-o", self.path("a.csv"))
+        lines = [line.split(",") for line in pathlib.Path(self.path("a.csv")).read_text().splitlines()]
+        header, rows = lines[0], lines[1:]
+        model = graftal.load(path, steps=4)
+        plant = model.plant()
+        self.assertEqual(len(plant), len(rows))
+        for key, column in (("order", "order"), ("rank", "rank"), ("width", "width"), ("length", "length")):
+            np.testing.assert_allclose(plant[key], [float(row[header.index(column)]) for row in rows], atol=1e-12)
+        self.assertEqual(list(plant["name"]), [row[header.index("name")] for row in rows])
+        bears = plant["parent"] >= 0
+        np.testing.assert_allclose(plant["start"][bears], plant["end"][plant["parent"][bears]], atol=1e-12)
+        np.testing.assert_array_equal(
+            plant["order"][bears], plant["order"][plant["parent"][bears]] + plant["branches"][bears]
+        )
+        self.assertEqual(model.word().count("F"), int((plant["name"] == "F").sum()))
+        with self.assertRaises(graftal.ModelError):
+            graftal.load(scene("ifs/fern.rifs")).plant()
+
     def test_points_are_those_of_the_program_to_the_bit(self):
         self.program("points", scene("ifs/fern.rifs"), "--points", "300000", "--seed", "7", "-q", "-o", self.path("a.ply"))
         data = pathlib.Path(self.path("a.ply")).read_bytes()

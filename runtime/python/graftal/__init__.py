@@ -203,6 +203,27 @@ class Model:
         self._ask(size, quality)
         return self._model.render(progress)
 
+    def word(self, progress: Optional[Progress] = None) -> str:
+        """The string that an L-system derives, before interpretation, as an axiom would have it."""
+        return self._model.word(progress)
+
+    def plant(self, progress: Optional[Progress] = None) -> np.ndarray:
+        """The modules of that string, a structured array in its order.
+
+        Fields: name, parent (row, -1 of the first), branches (or follows its parent), order, rank, age (-1: not known),
+        start, end and heading (3 each, in the model's units), length, width, parameters (NaN where it has fewer).
+        """
+        parts = self._model.plant(progress)
+        names = np.array(parts["name"], dtype=str) if parts["name"] else np.empty(0, dtype="U1")
+        columns = {"name": names, "parent": parts["parent"], "branches": np.array(parts["branches"], dtype=bool)}
+        columns.update((key, parts[key]) for key in ("order", "rank", "age", "start", "end", "heading"))
+        columns["length"] = np.linalg.norm(parts["end"] - parts["start"], axis=1)
+        columns.update((key, parts[key]) for key in ("width", "parameters"))
+        table = np.empty(len(names), dtype=[(key, value.dtype, value.shape[1:]) for key, value in columns.items()])
+        for key, value in columns.items():
+            table[key] = value
+        return table
+
     def points(self, count: int, progress: Optional[Progress] = None) -> "tuple[np.ndarray, np.ndarray]":
         """Points by random iteration: places (count, 3) float32 in the model's units, and colours (count, 3) uint8, sRGB.
 

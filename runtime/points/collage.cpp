@@ -12,8 +12,7 @@
 #include "compiler/chaos/chaos_game.h"
 #include "compiler/chaos/ordinary_ifs.h"
 #include "compiler/support/number.h"
-#include "runtime/image_files/image_files.h"
-#include "runtime/points/distance_transform.h"
+#include "runtime/points/target_picture.h"
 
 namespace graftal {
 
@@ -23,29 +22,6 @@ constexpr double half_diagonal = 0.70710678118654752; ///< of a cell
 constexpr std::uint64_t most_parts = 40'000'000;      ///< of an attractor
 constexpr std::uint64_t most_cells = 1u << 27;
 constexpr std::uint64_t random_points = 8'000'000; ///< where there is condensation
-
-/// Cells of the target, by the pixels of its picture.
-std::optional<CellSet> target_of(const Image& image, const CollageOptions& options, bool& by_alpha) {
-    CellSet set(image.width, image.height);
-    const auto channels = static_cast<std::size_t>(image.channels);
-    const bool alpha = image.channels == 2 || image.channels == 4;
-    by_alpha = false;
-    for (std::size_t i = 0; alpha && i < set.cells.size(); ++i)
-        by_alpha |= image.pixels[i * channels + channels - 1] < 1;
-    bool any = false;
-    for (std::size_t i = 0; i < set.cells.size(); ++i) {
-        const float* pixel = &image.pixels[i * channels];
-        const double grey =
-            image.channels < 3 ? pixel[0] : 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
-        const bool inside = by_alpha        ? pixel[channels - 1] >= options.threshold
-                            : options.light ? grey > options.threshold
-                                            : grey < options.threshold;
-        set.cells[i] = inside;
-        any |= inside;
-    }
-    if (!any) return std::nullopt;
-    return set;
-}
 
 /// The grid: pixels of the picture, and as many around it as images reach.
 class Grid {
@@ -259,11 +235,11 @@ Collage measured(const AnalysedModel& model, const OrdinaryIfs& ifs, const Plane
 
 std::optional<Collage> measure_collage(Session& session, const CollageOptions& options,
                                        Compilation& compilation) {
-    Image image;
-    compilation.status = read_image(options.target, image);
+    TargetPicture target;
+    compilation.status = read_target(options.target, options.criterion, target);
     if (!compilation.status.ok()) return std::nullopt;
     StageOptions compile = options.compile;
-    compile.view.size = {image.width, image.height};
+    compile.view.size = {target.width, target.height};
     compile.view.shaped = false;
     const std::shared_ptr<const ViewedModel> viewed = session.viewed(compile, compilation);
     if (!viewed) return std::nullopt;
@@ -278,14 +254,8 @@ std::optional<Collage> measure_collage(Session& session, const CollageOptions& o
             .with_hint("try --camera \"orthographic\", or a camera statement without a location");
         return std::nullopt;
     }
-    bool by_alpha = false;
-    const std::optional<CellSet> target = target_of(image, options, by_alpha);
-    if (!target) {
-        diagnostics.error({}, fmt::format("the target '{}' is empty: it has no pixel {} {}", options.target,
-                                          by_alpha        ? "of an alpha of at least"
-                                          : options.light ? "lighter than"
-                                                          : "darker than",
-                                          shortest(options.threshold)));
+    if (target.empty()) {
+        diagnostics.error({}, empty_target_text(options.target, options.criterion, target.by_alpha));
         return std::nullopt;
     }
     const Grid grid(viewed->view, ifs->maps, model.bounds[model.graph.root].ball);
@@ -293,8 +263,8 @@ std::optional<Collage> measure_collage(Session& session, const CollageOptions& o
         diagnostics.error(root, "the model reaches too far beyond the picture for a comparison");
         return std::nullopt;
     }
-    Collage collage = measured(model, *ifs, *norm, grid, *target);
-    collage.by_alpha = by_alpha;
+    Collage collage = measured(model, *ifs, *norm, grid, target.cells);
+    collage.by_alpha = target.by_alpha;
     return collage;
 }
 

@@ -4,15 +4,14 @@
 #include <string>
 
 #include "compiler/session/session.h"
+#include "runtime/points/target_picture.h"
 
 namespace graftal {
 
 struct CollageOptions {
     StageOptions compile;
     std::string target; ///< a picture
-    double threshold =
-        0.5; ///< of the stored values: darker pixels are the target, or those of at least this alpha
-    bool light = false; ///< the lighter ones are
+    TargetCriterion criterion;
 };
 
 /// Cover of a target set L by its images under the maps of an iterated function system (Barnsley 1985). Let

@@ -53,7 +53,7 @@ class Envelope {
             while (i + 1 < parabolas_.size() && parabolas_[i + 1].from < x)
                 ++i;
             const std::int64_t away = x - parabolas_[i].at;
-            put(x, away * away + parabolas_[i].base);
+            put(x, parabolas_[i].at, away * away + parabolas_[i].base);
         }
     }
 
@@ -78,9 +78,28 @@ std::vector<std::int64_t> squared_distances(const CellSet& set) {
             const std::int64_t down = squared[set.index(x, y)];
             if (down != nowhere) envelope.add(x, down * down);
         }
-        envelope.walk(set.width, [&](int x, std::int64_t value) { squared[set.index(x, y)] = value; });
+        envelope.walk(set.width, [&](int x, int, std::int64_t value) { squared[set.index(x, y)] = value; });
     }
     return squared;
+}
+
+std::vector<std::size_t> nearest_cells(const CellSet& set) {
+    const std::vector<std::int64_t> down = column_distances(set);
+    std::vector<std::size_t> nearest(set.cells.size());
+    Envelope envelope;
+    for (int y = 0; y < set.height; ++y) {
+        envelope.clear();
+        for (int x = 0; x < set.width; ++x) {
+            const std::int64_t away = down[set.index(x, y)];
+            if (away != nowhere) envelope.add(x, away * away);
+        }
+        envelope.walk(set.width, [&](int x, int at, std::int64_t) {
+            const int away = static_cast<int>(down[set.index(at, y)]);
+            const bool above = y - away >= 0 && set.at(at, y - away);
+            nearest[set.index(x, y)] = set.index(at, above ? y - away : y + away);
+        });
+    }
+    return nearest;
 }
 
 double farthest(const CellSet& from, const std::vector<std::int64_t>& squared) {

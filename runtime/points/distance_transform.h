@@ -25,6 +25,10 @@ struct CellSet {
 /// not empty.
 std::vector<std::int64_t> squared_distances(const CellSet& set);
 
+/// For every cell the index of a nearest cell of the set, by squared_distances() and at its price. Requires a
+/// set that is not empty.
+std::vector<std::size_t> nearest_cells(const CellSet& set);
+
 /// The largest distance of a cell of `from` from the nearest of the set that these are the squared distances
 /// to.
 double farthest(const CellSet& from, const std::vector<std::int64_t>& squared);

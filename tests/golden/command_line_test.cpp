@@ -24,7 +24,7 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
          "graftal: there is no command 'rendr' (did you mean 'render'? known here: render, animate,"},
         {"fern.rifs", "graftal: name a command first, such as 'graftal render fern.rifs'\n"},
         {"draw x.inst",
-         "there is no command 'draw' (known here: render, animate, points, collage, compile, export"},
+         "there is no command 'draw' (known here: render, animate, points, collage, fit, compile, export"},
         {"render", "graftal: no model given: try 'graftal render MODEL'\n"},
         {"check", "graftal: no model given: try 'graftal check MODEL'\n"},
         {"compare", "graftal: 'compare' takes two pictures: 'graftal compare A B'\n"},

@@ -40,6 +40,9 @@ TEST_F(CommandLine, PointsUsage) {
         {"collage a.png", "Try 'graftal collage --help'"},
         {"collage a.png b.rifs --threshold 2", "--threshold: '2' is not a number from 0 to 1"},
         {"collage a.png b.rifs --size 10x10", "--size"},
+        {"fit", "'fit' needs TARGET: 'graftal fit TARGET'"},
+        {"fit a.png -o b.png", "'b.png': the name of the model must end in .rifs"},
+        {"fit a.png --maps 1", "--maps: '1' is not a whole number from 2 to 24"},
     };
     for (const auto& [arguments, message] : cases) {
         const RunResult result = graftal(arguments);
@@ -123,6 +126,33 @@ TEST_F(CommandLine, Collage) {
     EXPECT_EQ(graftal("collage t.png none.rifs").status, 3);
     EXPECT_EQ(graftal("collage t.png '" + source_path("scenes/hart/pound_sign.rifs") + "'").status, 1);
     EXPECT_EQ(files(), "t.png");
+}
+
+TEST_F(CommandLine, Fit) {
+    write("g.rifs", "rifs g { codes 2d {\n.5 0 0 .5 0 0\n.5 0 0 .5 .5 0\n.5 0 0 .5 .25 .5\n} }\n"
+                    "camera { orthographic look_at: 0.5,0.5,0 width: 1.2 }\n");
+    ASSERT_EQ(graftal("points g.rifs --size 150x150 --points 1e6 --transparent -o t.png -q").status, 0);
+    const RunResult text = graftal("fit t.png --work 3");
+    EXPECT_EQ(text.status, 0);
+    EXPECT_THAT(text.err, HasSubstr("t.rifs: 3 maps, each shortens to 0."));
+    EXPECT_THAT(text.err, HasSubstr("so the model is proven to contract\n"));
+    EXPECT_THAT(read("t.rifs"), HasSubstr("\n#   graftal fit t.png --work 3\n"));
+    EXPECT_THAT(graftal("check t.rifs").out, HasSubstr("t.rifs: ok"));
+    const auto json =
+        nlohmann::json::parse(graftal("fit t.png --work 3 --threads 1 -o u.rifs --json -q").out);
+    EXPECT_EQ(json["maps"].size(), 3);
+    EXPECT_GE(json["iou_within_a_cell"], 0.99);
+    EXPECT_EQ(read("u.rifs"), read("t.rifs"));
+    EXPECT_EQ(graftal("fit none.png").status, 3);
+    EXPECT_EQ(graftal("fit g.rifs").status, 3);
+    EXPECT_EQ(graftal("fit t.png --start none.rifs -o v.rifs").status, 3);
+    EXPECT_EQ(graftal("fit t.png --threshold 0.5 -o nowhere/v.rifs --work 0.01").status, 3);
+    // An interruption keeps the best so far, and says so by its status.
+    const RunResult stopped =
+        shell("timeout -s INT 2 \"$graftal\" fit t.png --similar --maps 2 --work 1e6 -o w.rifs -q");
+    EXPECT_EQ(stopped.status, 124) << "timeout's own";
+    EXPECT_THAT(read("w.rifs"), HasSubstr("codes 2d"));
+    EXPECT_EQ(files(), "g.rifs t.png t.rifs u.rifs w.rifs");
 }
 
 } // namespace

@@ -32,6 +32,7 @@ int run_watch(const Options& options); ///< `render --watch`
 int run_animate(const Options& options);
 int run_points(const Options& options);
 int run_collage(const Options& options);
+int run_fit(const Options& options);
 int run_compile(const Options& options);
 int run_export(const Options& options);
 int run_check(const Options& options);

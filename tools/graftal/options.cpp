@@ -398,6 +398,8 @@ constexpr Command commands[] = {
      run_points},
     {"collage", "Measure how well a model's maps cover a target picture", add_collage, complete_nothing,
      run_collage},
+    {"fit", "Find an iterated function system whose attractor is a target picture", add_fit_options,
+     complete_fit, run_fit, ".rifs"},
     {"compile", "Write a model as a POV-Ray scene", add_compile, complete_compile, run_compile, ".pov"},
     {"export", "Write a model for other programs: Blender, web pages, printers, renderers", add_export,
      complete_export, run_export, ".glb"},

@@ -8,6 +8,7 @@
 #include "runtime/export/formats.h"
 #include "runtime/image/image.h"
 #include "runtime/image_files/animation.h"
+#include "runtime/points/target_picture.h"
 #include "runtime/points/tone.h"
 #include "runtime/render/render.h"
 #include "runtime/render/sweep.h"
@@ -35,9 +36,15 @@ struct PointsSettings {
     PointColour colour = PointColour::tint;
     Tone tone;
     std::string card;   ///< file, or ""
-    std::string target; ///< of `collage`
-    double threshold = 0.5;
-    bool light = false;
+    std::string target; ///< of `collage` and `fit`
+    TargetCriterion criterion;
+};
+
+/// Options of `fit` besides.
+struct FitSettings {
+    std::size_t most_maps = 8;
+    bool similar = false;
+    std::string start; ///< a model, or ""
 };
 
 /// Options of `studio`.
@@ -67,6 +74,7 @@ struct Options {
     std::string identifier;          ///< of `compile` to an .inc; "": as the model's file
     AnimationOptions animation;
     PointsSettings points;
+    FitSettings fit;
     FarmOptions farm;
     StudioOptions studio;
     bool error_asked = false; ///< --error or --error-world is given

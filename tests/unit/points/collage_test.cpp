@@ -29,6 +29,7 @@ TEST(DistanceTransform, IsExact) {
         const int width = 1 + static_cast<int>(seed * 7 % 23), height = 1 + static_cast<int>(seed * 5 % 19);
         const CellSet set = random_set(width, height, seed % 3 ? 0.02 : 0.3, seed);
         const std::vector<std::int64_t> squared = squared_distances(set);
+        const std::vector<std::size_t> nearest = nearest_cells(set);
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x) {
                 std::int64_t least = INT64_MAX;
@@ -37,6 +38,10 @@ TEST(DistanceTransform, IsExact) {
                         if (set.at(u, v))
                             least = std::min<std::int64_t>(least, (u - x) * (u - x) + (v - y) * (v - y));
                 ASSERT_EQ(squared[set.index(x, y)], least) << seed << ": " << x << ", " << y;
+                const std::size_t cell = nearest[set.index(x, y)];
+                ASSERT_TRUE(set.cells[cell]);
+                const auto u = static_cast<int>(cell) % width, v = static_cast<int>(cell) / width;
+                ASSERT_EQ((u - x) * (u - x) + (v - y) * (v - y), least) << seed << ": " << x << ", " << y;
             }
     }
 }
@@ -78,7 +83,7 @@ class CollageTest : public ::testing::Test {
     std::optional<Collage> measure(const std::string& model, const std::string& target) {
         CollageOptions options;
         options.target = target;
-        options.threshold = 0.001;
+        options.criterion.threshold = 0.001;
         Compilation compilation;
         PictureSession session(model);
         auto collage = measure_collage(session, options, compilation);

@@ -27,6 +27,7 @@ MODES = {
     'points, .png': (['points', SCENES / 'hart/pound_sign.rifs', '-q', '--size', '320x240', '--points', '3e6'], 'out.png'),
     'points, .ply': (['points', SCENES / 'hart/pound_sign.rifs', '-q', '--points', '3e6'], 'out.ply'),
     'collage': (['collage', 'models/target.png', SCENES / 'ifs/fern.rifs'], None),
+    'fit': (['fit', 'models/target.png', '-q', '--work', '2'], 'out.rifs'),
     'compare, .exr': (['compare', 'models/a.exr', 'models/a.exr'], None),
     'render, POV-Ray': (['render', '--engine', 'povray', SCENES / 'hart/pound_sign.rifs', '-q', '--size', '160x120', '--plain-light'], 'out.png'),
     'render, native, .exr': (['render', SCENES / 'abop/fig1_24f.lsys', '-q', '--size', '320x240', '--no-progressive'],

@@ -27,20 +27,13 @@ Json collage_json(const Options& options, const Collage& collage) {
             {"distance", collage.distance ? Json(*collage.distance) : Json(nullptr)}};
 }
 
-std::string criterion(const Options& options, const Collage& collage) {
-    return fmt::format("{} {:g}",
-                       collage.by_alpha       ? "with an alpha of at least"
-                       : options.points.light ? "lighter than"
-                                              : "darker than",
-                       options.points.threshold);
-}
-
 std::string collage_text(const Options& options, const Collage& collage) {
     const auto length = [&](double units) {
         return fmt::format("{:.4g} ({:.3g} pixels)", units, units / collage.pixel);
     };
-    std::string text = fmt::format("target         {} of {} pixels: those {}\n", collage.target_pixels,
-                                   collage.pixels, criterion(options, collage));
+    std::string text =
+        fmt::format("target         {} of {} pixels: those {}\n", collage.target_pixels, collage.pixels,
+                    criterion_text(options.points.criterion, collage.by_alpha));
     text += fmt::format("maps           {}", collage.maps);
     if (collage.condensations > 0) text += fmt::format(", and {} condensed", collage.condensations);
     text += fmt::format(
@@ -63,8 +56,7 @@ int run_collage(const Options& options) {
     CollageOptions collage_options;
     collage_options.compile = options.render.compile;
     collage_options.target = options.points.target;
-    collage_options.threshold = options.points.threshold;
-    collage_options.light = options.points.light;
+    collage_options.criterion = options.points.criterion;
     Compilation compilation;
     CommandSession session(options, options.operands.front());
     const std::optional<Collage> collage = measure_collage(session, collage_options, compilation);

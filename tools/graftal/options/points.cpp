@@ -156,27 +156,75 @@ std::string complete_points(Options& options) {
     return {};
 }
 
-void add_collage_options(CLI::App& app, Options& options) {
+namespace {
+
+/// The picture of a target, and which of its pixels are meant.
+void add_target(CLI::App& app, Options& options) {
     app.add_option(
            "TARGET", options.points.target,
            "Picture of the target set: its dark pixels, or its opaque pixels if it has an alpha channel")
         ->required()
         ->type_name("");
+    add_value(app, "--threshold", "T",
+              "Pixels darker than this, or at least this opaque, belong to the target (default 0.5)",
+              "a number from 0 to 1", parse_share,
+              [&options](double threshold) { options.points.criterion.threshold = threshold; });
+    app.add_flag("--light", options.points.criterion.light, "The lighter pixels belong to the target");
+}
+
+} // namespace
+
+void add_collage_options(CLI::App& app, Options& options) {
+    add_target(app, options);
     const auto set = [&options](const std::string& model) { options.operands = {model}; };
     app.add_option_function<std::string>("MODEL", set, "Model file of a flat iterated function system, or -")
         ->required()
         ->type_name("");
-    add_value(app, "--threshold", "T",
-              "Pixels darker than this, or at least this opaque, belong to the target (default 0.5)",
-              "a number from 0 to 1", parse_share,
-              [&options](double threshold) { options.points.threshold = threshold; });
-    app.add_flag("--light", options.points.light, "The lighter pixels belong to the target");
     app.add_flag("--json", options.json, "Print one JSON object on standard output");
     app.footer(
         "graftal lays the picture over the view that 'points' and 'render' have of the model at its size.\n"
         "Example:\n"
         "  graftal points leaf.rifs --size 400x400 --transparent -o leaf.png\n"
         "  graftal collage leaf.png leaf.rifs");
+}
+
+void add_fit_options(CLI::App& app, Options& options) {
+    FitSettings& fit = options.fit;
+    add_target(app, options);
+    app.add_option("-o,--output", options.render.output,
+                   "Model to write, .rifs (default: TARGET's name + .rifs, in this folder)")
+        ->type_name("FILE");
+    add_value(
+        app, "--maps", "N", "Most maps of the system (default 8)", "a whole number from 2 to 24",
+        [](const std::string& text) { return parse_whole(text, 2, 24); },
+        [&fit](std::uint64_t maps) { fit.most_maps = static_cast<std::size_t>(maps); });
+    app.add_flag("--similar", fit.similar,
+                 "Only maps that keep angles: turns, mirrors and one factor of size");
+    app.add_option(
+           "--start", fit.start,
+           "Model to begin with: a flat iterated function system in the frame in which graftal writes "
+           "them")
+        ->type_name("MODEL");
+    add_work(app, options,
+             "Limit of the search, roughly in seconds of one processor, by counted work (default 30)");
+    app.add_flag("--json", options.json, "Print one JSON object on standard output");
+    add_common(app, options);
+    app.footer(
+        "Ctrl-C ends the search, and keeps the best system so far. In the model, the picture is 1 wide, and\n"
+        "its lower left corner is <0, 0>.\n"
+        "Examples:\n"
+        "  graftal fit leaf.png                                   # makes leaf.rifs\n"
+        "  graftal fit leaf.png --maps 4 --work 120 --seed 7 -o other.rifs\n"
+        "  graftal fit leaf.png --start leaf.rifs                 # goes on from there\n"
+        "  graftal points leaf.rifs --size 400x400 -o again.png   # the target's size gives its frame");
+}
+
+std::string complete_fit(Options& options) {
+    std::string& output = options.render.output;
+    if (output.empty()) output = model_stem(options.points.target) + ".rifs";
+    if (output != "-" && !output.ends_with(".rifs"))
+        return fmt::format("'{}': the name of the model must end in .rifs", output);
+    return {};
 }
 
 } // namespace graftal

@@ -16,4 +16,9 @@ std::string complete_points(Options& options);
 /// Adds the options of `collage`: the two files, and `--json`.
 void add_collage_options(CLI::App& app, Options& options);
 
+/// Adds all options of `fit`.
+void add_fit_options(CLI::App& app, Options& options);
+/// Names the model after the target; returns what is wrong with its name, or "".
+std::string complete_fit(Options& options);
+
 } // namespace graftal

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runtime/inverse/target.h"
+
+namespace graftal {
+
+/// How well an attractor's cells agree with the target's. Tolerant: a cell counts as found where the other
+/// set has a cell among its eight neighbours.
+struct Agreement {
+    double strict = 0;   ///< |A n T| / |A u T|
+    double tolerant = 0; ///< the same, with the mean of both counts of found cells for |A n T|
+    double chamfer =
+        0; ///< mean distance from A to T, plus that from T to A, in cells; of agreement_in_full()
+};
+
+/// Draws attractors on the grid of a target. It keeps its memory between drawings.
+class AttractorPainter {
+  public:
+    explicit AttractorPainter(const Target& target);
+
+    /// Draws the attractor of contractions: every point that is kept is one of the attractor, and its images
+    /// are drawn in turn, one for each quarter of a cell. Returns the maps that were applied.
+    std::uint64_t draw(const PlaneMaps& maps);
+
+    /// Agreement of the drawn attractor, without the Chamfer distance.
+    Agreement agreement() const;
+    Agreement agreement_in_full() const;
+    /// Whether the attractor has a cell here or among the eight neighbours.
+    bool reaches(Vec2 point) const;
+    const std::vector<std::uint32_t>& cells() const { return cells_; }
+
+  private:
+    bool beside(std::size_t cell) const;
+
+    const Target& target_;
+    std::vector<std::uint8_t> quarters_, drawn_;
+    std::vector<std::uint32_t> cells_, touched_;
+    std::vector<Vec2> queue_;
+    std::size_t outside_ = 0; ///< images beyond the grid
+};
+
+} // namespace graftal

@@ -1,0 +1,251 @@
+#include "runtime/inverse/found_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/chaos/ordinary_ifs.h"
+#include "compiler/support/number.h"
+#include "compiler/support/printable.h"
+#include "runtime/render/picture_session.h"
+#include "runtime/system/worker_threads.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr int cells_a_side = 256;       ///< of the box around the target, at most
+constexpr int read_cells_a_side = 1024; ///< of the whole picture, at most
+constexpr std::size_t least_cells = 24; ///< that tell anything of maps
+constexpr double half_diagonal = 0.70710678118654752;
+
+/// The box around the set, in cells of `size` cells each.
+struct Crop {
+    CellSet set{0, 0};
+    int left = 0, top = 0, size = 1;
+};
+
+Crop cropped(const CellSet& whole) {
+    Crop crop;
+    int right = 0, bottom = 0;
+    crop.left = whole.width;
+    crop.top = whole.height;
+    for (int y = 0; y < whole.height; ++y)
+        for (int x = 0; x < whole.width; ++x) {
+            if (!whole.at(x, y)) continue;
+            crop.left = std::min(crop.left, x);
+            crop.top = std::min(crop.top, y);
+            right = std::max(right, x + 1);
+            bottom = std::max(bottom, y + 1);
+        }
+    const int width = right - crop.left, height = bottom - crop.top;
+    crop.size = (std::max(width, height) + cells_a_side - 1) / cells_a_side;
+    crop.set = CellSet((width + crop.size - 1) / crop.size, (height + crop.size - 1) / crop.size);
+    for (int y = crop.top; y < bottom; ++y)
+        for (int x = crop.left; x < right; ++x)
+            if (whole.at(x, y))
+                crop.set.cells[crop.set.index((x - crop.left) / crop.size, (y - crop.top) / crop.size)] =
+                    true;
+    return crop;
+}
+
+/// The model's frame: model = scale * cell + origin, with y up.
+class Frame {
+  public:
+    Frame(const TargetPicture& picture, const Crop& crop, int room) {
+        const double pixels = picture.pixels_per_cell, width = picture.width;
+        scale_ = crop.size * pixels / width;
+        origin_ = {crop.left * pixels / width - room * scale_,
+                   (picture.height - crop.top * pixels) / width + room * scale_};
+    }
+
+    double scale() const { return scale_; }
+    PlaneMap in_model(const PlaneMap& map) const {
+        return conjugate(
+            map, [this](Vec2 p) { return Vec2((p.x - origin_.x) / scale_, (origin_.y - p.y) / scale_); },
+            [this](Vec2 p) { return Vec2(origin_.x + scale_ * p.x, origin_.y - scale_ * p.y); });
+    }
+    PlaneMap in_cells(const PlaneMap& map) const {
+        return conjugate(
+            map, [this](Vec2 p) { return Vec2(origin_.x + scale_ * p.x, origin_.y - scale_ * p.y); },
+            [this](Vec2 p) { return Vec2((p.x - origin_.x) / scale_, (origin_.y - p.y) / scale_); });
+    }
+
+  private:
+    template<typename Back, typename There>
+    static PlaneMap conjugate(const PlaneMap& map, const Back& back, const There& there) {
+        const Vec2 image = there(map(back({0, 0})));
+        return {map.a, -map.b, -map.c, map.d, image.x, image.y};
+    }
+
+    double scale_ = 1;
+    Vec2 origin_{0.0};
+};
+
+double rounded(double value, int digits) {
+    std::string text;
+    append_number(text, value, digits);
+    return parse_number(text).value_or(value);
+}
+
+PlaneMap rounded(const PlaneMap& m) {
+    const auto six = [](double value) { return std::abs(value) < 5e-7 ? 0.0 : rounded(value, 6); };
+    return {six(m.a), six(m.b), six(m.c), six(m.d), six(m.e), six(m.f)};
+}
+
+/// Probabilities by the areas of the images (Barnsley 1988), in thousandths.
+std::vector<double> probabilities(const PlaneMaps& maps) {
+    std::vector<double> shares;
+    double largest = 0, sum = 0;
+    for (const PlaneMap& map : maps)
+        largest = std::max(largest, std::abs(map.determinant()));
+    for (const PlaneMap& map : maps)
+        sum += shares.emplace_back(std::max(std::abs(map.determinant()), std::max(0.02 * largest, 1e-9)));
+    for (double& share : shares)
+        share = std::max(0.001, std::round(1000 * share / sum) / 1000);
+    return shares;
+}
+
+std::string text_of(const FoundModel& found, const TargetPicture& picture, const FindOptions& options) {
+    const std::string name = escaped(std::filesystem::path(options.target).filename().string());
+    std::string text = fmt::format(
+        "# {} map{} that graftal found for the picture {} of {}x{} pixels:\n"
+        "#   {}\n"
+        "# Intersection over union: {:.3f}, within one cell {:.3f}. A cell has {} pixel{}.\n"
+        "# Chamfer distance {:.2f} cells. Contractivity {:.4f}. Bound by the collage theorem: {:.1f} cells.\n"
+        "rifs found {{\n  codes 2d {{\n    #    a b c d e f p\n",
+        found.maps.size(), found.maps.size() == 1 ? "" : "s", name, picture.width, picture.height,
+        options.made_by, found.agreement.strict, found.agreement.tolerant, shortest(found.cell),
+        found.cell == 1 ? "" : "s", found.agreement.chamfer, found.contractivity, found.bound);
+    const std::vector<double> chances = probabilities(found.maps);
+    for (std::size_t i = 0; i < found.maps.size(); ++i) {
+        const PlaneMap& m = found.maps[i];
+        text += fmt::format("    w{}:", i + 1);
+        for (const double value : {m.a, m.b, m.c, m.d, m.e, m.f, chances[i]})
+            text += fmt::format(" {:>10}", shortest(value));
+        text += "\n";
+    }
+    text += fmt::format("  }}\n}}\ncamera {{ orthographic  look_at: 0.5, {}, 0  width: 1 }}\n",
+                        shortest(rounded(0.5 * picture.height / picture.width, 6)));
+    return text;
+}
+
+/// Maps of a model to begin with, in cells.
+std::optional<PlaneMaps> start_of(const FindOptions& options, const Frame& frame, const Target& target,
+                                  Compilation& compilation) {
+    PlaneMaps maps;
+    if (options.start.empty()) return maps;
+    PictureSession session(options.start);
+    const std::shared_ptr<const AnalysedModel> model = session.analysed(options.compile, compilation);
+    if (!model) return std::nullopt;
+    const std::optional<OrdinaryIfs> ifs = ordinary_ifs(model->graph, model->components);
+    const auto flat = [](const Instance& map) { return is_flat(map.parent_from_child); };
+    const Object& root = model->graph.objects[model->graph.root];
+    if (!ifs || !ifs->condensation.empty() || !std::all_of(ifs->maps.begin(), ifs->maps.end(), flat)) {
+        compilation.diagnostics
+            .error(root.span,
+                   fmt::format("'{}' is not a flat iterated function system, which the search could "
+                               "begin with",
+                               root.name))
+            .with_hint("start with a .rifs of maps of the plane, without 'follow' and 'condense'");
+        return std::nullopt;
+    }
+    if (ifs->maps.size() > options.search.most_maps) {
+        compilation.diagnostics
+            .error(root.span, fmt::format("this system has {} maps, more than the {} that the search may use",
+                                          ifs->maps.size(), options.search.most_maps))
+            .with_hint(fmt::format("allow more: --maps {}", ifs->maps.size()));
+        return std::nullopt;
+    }
+    for (const Instance& instance : ifs->maps) {
+        const Mat3& m = instance.parent_from_child.linear;
+        const Vec3& t = instance.parent_from_child.translation;
+        maps.push_back(ruled(frame.in_cells({m[0][0], m[1][0], m[0][1], m[1][1], t.x, t.y}), target,
+                             options.search.rules));
+    }
+    return maps;
+}
+
+/// The Hausdorff distance of the target from the union of its images, each moved to its nearest cell.
+double collage_distance(const Target& target, const PlaneMaps& maps) {
+    CellSet set(target.width(), target.height()), images = set;
+    double beyond = 0;
+    for (const Vec2 p : target.points()) {
+        set.cells[set.index(static_cast<int>(p.x), static_cast<int>(p.y))] = true;
+        for (const PlaneMap& map : maps) {
+            const Vec2 q = map(p);
+            if (q.x >= 0 && q.y >= 0 && q.x < set.width && q.y < set.height) {
+                images.cells[images.index(static_cast<int>(q.x), static_cast<int>(q.y))] = true;
+            } else {
+                const Vec2 away =
+                    q - target.nearest(q); // the point of the border's cell: near enough for a bound
+                beyond = std::max(beyond, std::sqrt(away.x * away.x + away.y * away.y));
+            }
+        }
+    }
+    if (std::find(images.cells.begin(), images.cells.end(), true) == images.cells.end()) return beyond;
+    return std::max(beyond, hausdorff_distance(set, images));
+}
+
+} // namespace
+
+std::optional<FoundModel> find_model(const FindOptions& options, const CancelFlag& cancel,
+                                     Compilation& compilation) {
+    TargetPicture picture;
+    compilation.status = read_target(options.target, options.criterion, picture, read_cells_a_side);
+    if (!compilation.status.ok()) return std::nullopt;
+    if (picture.empty()) {
+        compilation.diagnostics
+            .error({}, empty_target_text(options.target, options.criterion, picture.by_alpha))
+            .with_hint("choose other pixels by --threshold or --light");
+        return std::nullopt;
+    }
+    const Crop crop = cropped(picture.cells);
+    const auto cells =
+        static_cast<std::size_t>(std::count(crop.set.cells.begin(), crop.set.cells.end(), true));
+    if (cells < least_cells) {
+        compilation.diagnostics
+            .error({}, fmt::format("the target '{}' has only {} pixel{}: too few to tell maps by",
+                                   options.target, cells, cells == 1 ? "" : "s"))
+            .with_hint(fmt::format("draw it larger, with at least {} pixels", least_cells));
+        return std::nullopt;
+    }
+    const Target target(crop.set);
+    const Frame frame(picture, crop, target.room());
+    SearchOptions search_options = options.search;
+    std::optional<PlaneMaps> start = start_of(options, frame, target, compilation);
+    if (!start) return std::nullopt;
+    search_options.start = std::move(*start);
+    FoundSystem system =
+        search(target, search_options, WorkerThreads(options.threads), cancel, options.on_progress);
+
+    // By area, the largest first; the numbers are those that are written.
+    std::stable_sort(system.maps.begin(), system.maps.end(), [](const PlaneMap& a, const PlaneMap& b) {
+        return std::abs(a.determinant()) > std::abs(b.determinant());
+    });
+    FoundModel found;
+    PlaneMaps written;
+    for (const PlaneMap& map : system.maps) {
+        found.maps.push_back(rounded(frame.in_model(map)));
+        written.push_back(frame.in_cells(found.maps.back()));
+    }
+    AttractorPainter painter(target);
+    painter.draw(written);
+    found.agreement = painter.agreement_in_full();
+    found.contractivity = largest_stretch(found.maps);
+    found.epsilon = collage_distance(target, written);
+    found.bound = (found.epsilon + half_diagonal) / (1 - found.contractivity);
+    found.cell = static_cast<double>(crop.size) * picture.pixels_per_cell;
+    found.cells = cells;
+    found.width = crop.set.width;
+    found.height = crop.set.height;
+    found.seconds = system.seconds;
+    found.by_alpha = picture.by_alpha;
+    found.text = text_of(found, picture, options);
+    return found;
+}
+
+} // namespace graftal

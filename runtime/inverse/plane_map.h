@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "compiler/support/counter_random.h"
+
+namespace graftal {
+
+using Vec2 = glm::dvec2;
+
+/// The map x' = a x + b y + e, y' = c x + d y + f: a row of `codes 2d`.
+struct PlaneMap {
+    double a = 1, b = 0, c = 0, d = 1, e = 0, f = 0;
+
+    Vec2 operator()(Vec2 p) const { return {a * p.x + b * p.y + e, c * p.x + d * p.y + f}; }
+    double determinant() const { return a * d - b * c; }
+    bool operator==(const PlaneMap&) const = default;
+};
+
+using PlaneMaps = std::vector<PlaneMap>;
+
+/// The linear part as rotation(left_rad) * diagonal(largest, least) * rotation(right_rad). `least` is
+/// negative where the map mirrors; |least| <= largest.
+struct PlaneStretch {
+    double largest = 0, least = 0, left_rad = 0, right_rad = 0;
+};
+
+PlaneStretch stretch_of(const PlaneMap& map);
+
+/// The map with this linear part that takes `from` to `to`.
+PlaneMap map_of(const PlaneStretch& stretch, Vec2 from, Vec2 to);
+
+/// The longest that a map makes a unit vector: the contractivity, where it is below 1.
+double largest_stretch(const PlaneMaps& maps);
+
+/// Moves the map by `step`, the changes of a, b, the image's x, c, d and the image's y at `centre`. Where it
+/// then lengthens more than `most`, its stretches are cut to that; the image of `centre` stays.
+PlaneMap moved(const PlaneMap& map, const double* step, Vec2 centre, double most);
+
+/// The nearest map that changes no shape, by the least sum of squares of the linear part; the image of
+/// `centre` stays.
+PlaneMap nearest_similarity(const PlaneMap& map, Vec2 centre);
+
+/// An inverse of bounded length: stretches below `least` count as that, so that a flat map has one, too.
+PlaneMap bounded_inverse(const PlaneMap& map, Vec2 centre, double least);
+
+/// The point that the map leaves in place. Requires a contraction.
+Vec2 fixed_point(const PlaneMap& map);
+
+/// Random numbers of one task, one after the other.
+class Draws {
+  public:
+    Draws(CounterRandom random, std::uint64_t number) : random_(random.sequence(number)) {}
+
+    double unit() { return CounterRandom::unit(random_(next_++)); }
+    double between(double least, double most) { return least + (most - least) * unit(); }
+    std::size_t below(std::size_t count) {
+        return static_cast<std::size_t>(unit() * static_cast<double>(count));
+    }
+    double normal(); ///< of mean 0 and deviation 1 (Box and Muller 1958)
+
+  private:
+    CounterRandom random_;
+    std::uint64_t next_ = 0;
+};
+
+} // namespace graftal

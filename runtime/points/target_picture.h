@@ -1,0 +1,39 @@
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "compiler/support/status.h"
+#include "runtime/points/distance_transform.h"
+
+namespace graftal {
+
+/// Which pixels of a picture are a target set.
+struct TargetCriterion {
+    /// Of the stored values: darker pixels belong to it; in a picture with an alpha below 1 anywhere, pixels
+    /// of at least this alpha.
+    double threshold = 0.5;
+    bool light = false; ///< the lighter pixels do
+};
+
+/// A picture as a set of cells: squares of pixels that hold a pixel of the set.
+struct TargetPicture {
+    int width = 0; ///< of the picture, in pixels
+    int height = 0;
+    int pixels_per_cell = 1; ///< along a side
+    CellSet cells{0, 0};
+    bool by_alpha = false;
+
+    bool empty() const;
+};
+
+/// Reads a picture row by row, into at most so many cells a side: memory goes with the cells.
+Status read_target(const std::string& path, const TargetCriterion& criterion, TargetPicture& target,
+                   int most_cells_a_side = std::numeric_limits<int>::max());
+
+/// "lighter than 0.5", and so on.
+std::string criterion_text(const TargetCriterion& criterion, bool by_alpha);
+/// The message for a target without a pixel.
+std::string empty_target_text(const std::string& path, const TargetCriterion& criterion, bool by_alpha);
+
+} // namespace graftal

@@ -1,0 +1,211 @@
+// fit_bench KIND FIRST COUNT SECONDS: draws random systems of maps at 256 pixels, lets the search find them
+// again from their pictures alone, and prints a line of fields, separated by tabs, for each: name, maps,
+// cells, maps found, IoU within a pixel, IoU, Chamfer distance, largest stretch, processor seconds. KIND is
+// connected, dusty or classical.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/inverse/search.h"
+
+namespace graftal {
+namespace {
+
+constexpr int picture_size = 256;
+
+struct Case {
+    std::string name;
+    PlaneMaps maps;
+};
+
+/// Moves the attractor into the square of nine tenths of the picture; false where it has no size.
+bool fill_picture(PlaneMaps& maps, Draws& draws) {
+    Vec2 p(0.0), low(1e9), high(-1e9);
+    for (int i = 0; i < 8000; ++i) {
+        p = maps[draws.below(maps.size())](p);
+        if (i < 200) continue;
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    const double size = std::max(high.x - low.x, high.y - low.y);
+    if (!(size > 1e-6 && size < 1e6)) return false;
+    const double scale = 0.9 * picture_size / size;
+    const Vec2 middle = 0.5 * (low + high), centre(0.5 * picture_size);
+    for (PlaneMap& map : maps) {
+        const Vec2 image = centre + scale * (map(middle) - middle), shift = image - map(centre);
+        map.e += shift.x;
+        map.f += shift.y;
+    }
+    return true;
+}
+
+CellSet drawn(const PlaneMaps& maps) {
+    CellSet square(picture_size, picture_size);
+    square.cells.assign(square.cells.size(), true);
+    const Target grid(square);
+    PlaneMaps moved = maps;
+    for (PlaneMap& map : moved) {
+        const Vec2 shift = map({0, 0}) + static_cast<double>(grid.room()) - map(Vec2(grid.room()));
+        map.e = shift.x;
+        map.f = shift.y;
+    }
+    AttractorPainter painter(grid);
+    painter.draw(moved);
+    CellSet set(grid.width(), grid.height());
+    for (const std::uint32_t cell : painter.cells())
+        set.cells[cell] = true;
+    int left = set.width, top = set.height, right = 0, bottom = 0;
+    for (int y = 0; y < set.height; ++y)
+        for (int x = 0; x < set.width; ++x) {
+            if (!set.at(x, y)) continue;
+            left = std::min(left, x), right = std::max(right, x + 1);
+            top = std::min(top, y), bottom = std::max(bottom, y + 1);
+        }
+    CellSet crop(right - left, bottom - top);
+    for (int y = top; y < bottom; ++y)
+        for (int x = left; x < right; ++x)
+            crop.cells[crop.index(x - left, y - top)] = set.at(x, y);
+    return crop;
+}
+
+/// The share of the set's cells in its largest part, whose cells are at most one apart.
+double largest_part(const CellSet& set) {
+    std::vector<bool> seen(set.cells.size());
+    std::size_t largest = 0, all = 0;
+    std::vector<std::pair<int, int>> stack;
+    for (int y = 0; y < set.height; ++y)
+        for (int x = 0; x < set.width; ++x) {
+            if (!set.at(x, y) || seen[set.index(x, y)]) continue;
+            std::size_t size = 0;
+            stack.assign(1, {x, y});
+            seen[set.index(x, y)] = true;
+            while (!stack.empty()) {
+                const auto [column, row] = stack.back();
+                stack.pop_back();
+                ++size;
+                for (int v = std::max(0, row - 2); v <= std::min(set.height - 1, row + 2); ++v)
+                    for (int u = std::max(0, column - 2); u <= std::min(set.width - 1, column + 2); ++u)
+                        if (set.at(u, v) && !seen[set.index(u, v)]) {
+                            seen[set.index(u, v)] = true;
+                            stack.emplace_back(u, v);
+                        }
+            }
+            all += size;
+            largest = std::max(largest, size);
+        }
+    return static_cast<double>(largest) / static_cast<double>(all);
+}
+
+/// Two to six maps whose images have this share of the area in all; nothing where one is too long or too
+/// thin.
+std::optional<PlaneMaps> random_maps(Draws& draws, double area) {
+    std::vector<PlaneStretch> stretches(2 + draws.below(5));
+    double sum = 0;
+    for (PlaneStretch& stretch : stretches) {
+        stretch.largest = std::exp(draws.between(std::log(0.2), std::log(0.85)));
+        stretch.least = stretch.largest * std::exp(-0.35 * std::abs(draws.normal()));
+        sum += stretch.largest * stretch.least;
+    }
+    PlaneMaps maps;
+    for (PlaneStretch& stretch : stretches) {
+        stretch.largest *= std::sqrt(area / sum);
+        stretch.least *= std::sqrt(area / sum);
+        if (stretch.largest > 0.88 || stretch.least < 0.06) return std::nullopt;
+        if (draws.unit() < 0.35) stretch.least = -stretch.least;
+        stretch.left_rad = draws.between(-std::numbers::pi, std::numbers::pi);
+        stretch.right_rad = draws.between(-std::numbers::pi, std::numbers::pi);
+        const Vec2 fixed(draws.unit(), draws.unit());
+        maps.push_back(map_of(stretch, fixed, fixed));
+    }
+    return maps;
+}
+
+Case random_case(std::uint64_t number, bool dusty) {
+    Draws draws(CounterRandom(dusty ? 20'261 : 20'262), number);
+    for (;;) {
+        std::optional<PlaneMaps> maps =
+            random_maps(draws, dusty ? draws.between(0.12, 0.5) : draws.between(0.6, 1.3));
+        if (!maps || !fill_picture(*maps, draws)) continue;
+        const CellSet set = drawn(*maps);
+        const auto cells = std::count(set.cells.begin(), set.cells.end(), true);
+        if (cells < 900 || cells > 36'000 || set.width > picture_size || set.height > picture_size) continue;
+        const double part = largest_part(set);
+        if (dusty ? part <= 0.6 : part >= 0.85) return {"random " + std::to_string(number), std::move(*maps)};
+    }
+}
+
+std::vector<Case> classical() {
+    const double h = std::sqrt(3.0) / 6, third = 1.0 / 3;
+    std::vector<Case> cases = {
+        {"fern",
+         {{0, 0, 0, .16, 0, 0},
+          {.85, .04, -.04, .85, 0, 1.6},
+          {.2, -.26, .23, .22, 0, 1.6},
+          {-.15, .28, .26, .24, 0, .44}}},
+        {"dragon", {{.5, -.5, .5, .5, 0, 0}, {-.5, -.5, .5, -.5, 1, 0}}},
+        {"Koch curve",
+         {{third, 0, 0, third, 0, 0},
+          {third / 2, -h, h, third / 2, third, 0},
+          {third / 2, h, -h, third / 2, .5, h},
+          {third, 0, 0, third, 2 * third, 0}}},
+        {"gasket", {{.5, 0, 0, .5, 0, 0}, {.5, 0, 0, .5, .5, 0}, {.5, 0, 0, .5, .25, .433}}},
+        {"maple leaf",
+         {{.14, .01, 0, .51, -.08, -1.31},
+          {.43, .52, -.45, .5, 1.49, -.75},
+          {.45, -.49, .47, .47, -1.62, -.74},
+          {.49, 0, 0, .51, .02, 1.62}}},
+        {"tree",
+         {{0, 0, 0, .5, 0, 0},
+          {.42, -.42, .42, .42, 0, .2},
+          {.42, .42, -.42, .42, 0, .2},
+          {.1, 0, 0, .1, 0, .2}}}};
+    Draws draws(CounterRandom(1), 0);
+    for (Case& known : cases)
+        fill_picture(known.maps, draws);
+    return cases;
+}
+
+void study(const Case& known, double seconds) {
+    const Target target(drawn(known.maps));
+    SearchOptions options;
+    options.seconds = seconds;
+    const std::clock_t begun = std::clock();
+    const FoundSystem found = search(target, options, SerialWorkers(), {}, {});
+    const double taken = static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
+    AttractorPainter painter(target);
+    painter.draw(found.maps);
+    const Agreement agreement = painter.agreement_in_full();
+    std::printf("%s\t%zu\t%zu\t%zu\t%.3f\t%.3f\t%.3f\t%.2f\t%.1f\n", known.name.c_str(), known.maps.size(),
+                target.points().size(), found.maps.size(), agreement.tolerant, agreement.strict,
+                agreement.chamfer, largest_stretch(found.maps), taken);
+    std::fflush(stdout);
+}
+
+int run(int argc, char** argv) {
+    if (argc != 5) return std::fprintf(stderr, "fit_bench KIND FIRST COUNT SECONDS\n"), 2;
+    const std::string kind = argv[1];
+    const auto first = static_cast<std::uint64_t>(std::atoi(argv[2])),
+               count = static_cast<std::uint64_t>(std::atoi(argv[3]));
+    const double seconds = std::atof(argv[4]);
+    const std::vector<Case> cases = classical();
+    for (std::uint64_t i = first; i < first + count; ++i)
+        if (kind != "classical")
+            study(random_case(i, kind == "dusty"), seconds);
+        else if (i < cases.size())
+            study(cases[i], seconds);
+    return 0;
+}
+
+} // namespace
+} // namespace graftal
+
+int main(int argc, char** argv) {
+    return graftal::run(argc, argv);
+}

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "runtime/inverse/found_model.h"
+#include "runtime/system/file.h"
+#include "runtime/system/interruption.h"
+#include "tools/graftal/commands.h"
+#include "tools/graftal/progress_bar.h"
+#include "tools/graftal/report.h"
+
+namespace graftal {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+FindOptions find_options(const Options& options) {
+    FindOptions find;
+    find.target = options.points.target;
+    find.criterion = options.points.criterion;
+    find.search.most_maps = options.fit.most_maps;
+    find.search.rules.similar = options.fit.similar;
+    find.search.seconds = options.render.work_seconds.value_or(find.search.seconds);
+    find.search.seed = options.render.compile.lower.seed.value_or(find.search.seed);
+    find.start = options.fit.start;
+    find.compile = inspecting(options, true);
+    find.made_by = options.render.metadata.description;
+    find.threads = options.render.threads;
+    return find;
+}
+
+Json fit_json(const Options& options, const FoundModel& found) {
+    Json maps = Json::array();
+    for (const PlaneMap& m : found.maps)
+        maps.push_back({m.a, m.b, m.c, m.d, m.e, m.f});
+    return {{"target", options.points.target},
+            {"model", options.render.output},
+            {"target_cells", found.cells},
+            {"cell_pixels", found.cell},
+            {"maps", std::move(maps)},
+            {"iou", found.agreement.strict},
+            {"iou_within_a_cell", found.agreement.tolerant},
+            {"chamfer_cells", found.agreement.chamfer},
+            {"contractivity", found.contractivity},
+            {"epsilon_cells", found.epsilon},
+            {"bound_cells", found.bound},
+            {"work_seconds", found.seconds}};
+}
+
+std::string fit_text(const Options& options, const FoundModel& found) {
+    return fmt::format(
+        "{}: {} maps, each shortens to {:.4f} or less, so the model is proven to contract\n"
+        "agreement      IoU {:.3f}, within one cell {:.3f}; Chamfer distance {:.2f} cells\n"
+        "target         {} cells in {}x{}: those with pixels {}; a cell is {:g} pixels wide\n"
+        "collage        epsilon {:.2f} cells; the attractor is at most {:.1f} cells from the target\n"
+        "work           {:.1f} s, counted\n",
+        options.render.output, found.maps.size(), found.contractivity, found.agreement.strict,
+        found.agreement.tolerant, found.agreement.chamfer, found.cells, found.width, found.height,
+        criterion_text(options.points.criterion, found.by_alpha), found.cell, found.epsilon, found.bound,
+        found.seconds);
+}
+
+} // namespace
+
+int run_fit(const Options& options) {
+    ProgressBar bar(!options.quiet);
+    FindOptions find = find_options(options);
+    find.on_progress = [&](const SearchProgress& progress) {
+        bar.show("searching", progress.fraction,
+                 fmt::format(", {} maps, agreement {:.3f}", progress.maps, progress.tolerant));
+    };
+    Compilation compilation;
+    const Interruption interruption;
+    const std::optional<FoundModel> found = find_model(find, interruption.flag(), compilation);
+    if (found) compilation.status = write_text(options.render.output, found->text);
+    bar.clear();
+    const int status = conclude(options, compilation, interruption.signal());
+    if (!found || !compilation.status.ok()) return status;
+    if (options.json) {
+        const int printed = print_output(fit_json(options, *found).dump(2) + "\n");
+        return status == exit_done ? printed : status;
+    }
+    if (!options.quiet) say(fit_text(options, *found));
+    return status;
+}
+
+} // namespace graftal

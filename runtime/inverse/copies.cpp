@@ -132,6 +132,7 @@ std::optional<SelfCopy> CopySearch::find(Draws& draws, std::uint64_t& work, cons
     PlaneStretch stretch;
     stretch.largest = std::exp(draws.between(std::log(least), std::log(most)));
     stretch.least = stretch.largest * std::exp(-0.3 * std::abs(draws.normal()));
+    if (where && draws.unit() < 0.15) stretch.least *= 0.02; // such as the stem of a fern
     if (rules_.similar) stretch.least = stretch.largest;
     if (draws.unit() < 0.5) stretch.least = -stretch.least;
     stretch.left_rad = draws.between(-pi, pi);
@@ -205,7 +206,7 @@ std::optional<SelfCopy> CopySearch::snapped(const PlaneMap& map, double reach_px
     double mean_px = 0;
     copy.bad = outside(copy.map, points_.inner, mean_px);
     work += points_.inner.size();
-    if (copy.bad > 0.08 || std::abs(stretch_of(copy.map).least) < 0.02) return std::nullopt;
+    if (copy.bad > 0.08) return std::nullopt;
     copy.covered = covered_by(copy.map, target_);
     copy.count = count_of(copy.covered);
     work += target_.samples().size();

@@ -224,6 +224,8 @@ std::string complete_fit(Options& options) {
     if (output.empty()) output = model_stem(options.points.target) + ".rifs";
     if (output != "-" && !output.ends_with(".rifs"))
         return fmt::format("'{}': the name of the model must end in .rifs", output);
+    if (output == "-" && options.json)
+        return "--json prints where '-o -' writes the model: leave one of them out";
     return {};
 }
 

@@ -56,7 +56,7 @@ bool AttractorPainter::reaches(Vec2 point) const {
                   static_cast<std::size_t>(point.x));
 }
 
-Agreement AttractorPainter::agreement() const {
+SetAgreement AttractorPainter::agreement() const {
     std::size_t both = 0, false_cells = 0, missed = 0;
     for (const std::uint32_t cell : cells_) {
         both += target_.inside(cell);
@@ -68,14 +68,14 @@ Agreement AttractorPainter::agreement() const {
     const auto wanted = static_cast<double>(target_.points().size());
     const auto wrong = static_cast<double>(false_cells + outside_), lost = static_cast<double>(missed);
     const double found = (drawn - wrong + wanted - lost) / 2;
-    Agreement result;
+    SetAgreement result;
     result.strict = static_cast<double>(both) / (drawn + wanted - static_cast<double>(both));
     result.tolerant = found / (found + wrong + lost);
     return result;
 }
 
-Agreement AttractorPainter::agreement_in_full() const {
-    Agreement result = agreement();
+SetAgreement AttractorPainter::agreement_in_full() const {
+    SetAgreement result = agreement();
     if (cells_.empty()) return result;
     CellSet mine(target_.width(), target_.height());
     for (const std::uint32_t cell : cells_)

@@ -9,7 +9,7 @@ namespace graftal {
 
 /// How well an attractor's cells agree with the target's. Tolerant: a cell counts as found where the other
 /// set has a cell among its eight neighbours.
-struct Agreement {
+struct SetAgreement {
     double strict = 0;   ///< |A n T| / |A u T|
     double tolerant = 0; ///< the same, with the mean of both counts of found cells for |A n T|
     double chamfer =
@@ -25,9 +25,9 @@ class AttractorPainter {
     /// are drawn in turn, one for each quarter of a cell. Returns the maps that were applied.
     std::uint64_t draw(const PlaneMaps& maps);
 
-    /// Agreement of the drawn attractor, without the Chamfer distance.
-    Agreement agreement() const;
-    Agreement agreement_in_full() const;
+    /// SetAgreement of the drawn attractor, without the Chamfer distance.
+    SetAgreement agreement() const;
+    SetAgreement agreement_in_full() const;
     /// Whether the attractor has a cell here or among the eight neighbours.
     bool reaches(Vec2 point) const;
     const std::vector<std::uint32_t>& cells() const { return cells_; }

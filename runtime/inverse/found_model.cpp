@@ -181,7 +181,7 @@ double collage_distance(const Target& target, const PlaneMaps& maps) {
                 images.cells[images.index(static_cast<int>(q.x), static_cast<int>(q.y))] = true;
             } else {
                 const Vec2 away =
-                    q - target.nearest(q); // the point of the border's cell: near enough for a bound
+                    q - target.nearest(q); // to some point of the target: no less than the distance
                 beyond = std::max(beyond, std::sqrt(away.x * away.x + away.y * away.y));
             }
         }
@@ -222,7 +222,7 @@ std::optional<FoundModel> find_model(const FindOptions& options, const CancelFla
     FoundSystem system =
         search(target, search_options, WorkerThreads(options.threads), cancel, options.on_progress);
 
-    // By area, the largest first; the numbers are those that are written.
+    // The largest image comes first. The numbers are measured as they are written.
     std::stable_sort(system.maps.begin(), system.maps.end(), [](const PlaneMap& a, const PlaneMap& b) {
         return std::abs(a.determinant()) > std::abs(b.determinant());
     });

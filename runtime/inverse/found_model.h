@@ -26,7 +26,7 @@ struct FindOptions {
 struct FoundModel {
     std::string text; ///< `.rifs`
     PlaneMaps maps;   ///< in the model's units, as the text has them
-    Agreement agreement;
+    SetAgreement agreement;
     double contractivity = 0;  ///< below 1, by the singular values of the maps as they are written
     double epsilon = 0;        ///< Hausdorff distance of the target from its images
     double bound = 0;          ///< of the attractor's distance from the target (collage.h)

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include <glm/vec2.hpp>
-
 namespace graftal {
 
 PlaneStretch stretch_of(const PlaneMap& map) {

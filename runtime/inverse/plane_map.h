@@ -5,13 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include <glm/vec2.hpp>
-
 #include "compiler/support/counter_random.h"
+#include "compiler/support/flat_area.h"
 
 namespace graftal {
-
-using Vec2 = glm::dvec2;
 
 /// The map x' = a x + b y + e, y' = c x + d y + f: a row of `codes 2d`.
 struct PlaneMap {

@@ -19,7 +19,7 @@ constexpr double seconds_of_map = 1.8e-8; ///< a map applied to a point, with th
 struct System {
     PlaneMaps maps;
     double value = -1;
-    Agreement agreement;
+    SetAgreement agreement;
 };
 
 /// One task's own: nothing that others write.
@@ -83,7 +83,7 @@ class Search {
                 {std::min(1.0, fraction()), lines_.front().agreement.tolerant, lines_.front().maps.size()});
     }
 
-    double value_of(const Agreement& agreement, std::size_t maps) const {
+    double value_of(const SetAgreement& agreement, std::size_t maps) const {
         return 0.9 * agreement.tolerant + 0.1 * agreement.strict - 0.004 * static_cast<double>(maps);
     }
 

@@ -26,7 +26,7 @@ struct SearchProgress {
 
 struct FoundSystem {
     PlaneMaps maps; ///< at least one
-    Agreement agreement;
+    SetAgreement agreement;
     double seconds = 0; ///< of counted work
 };
 

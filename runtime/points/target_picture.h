@@ -10,7 +10,7 @@ namespace graftal {
 
 /// Which pixels of a picture are a target set.
 struct TargetCriterion {
-    /// Of the stored values: darker pixels belong to it; in a picture with an alpha below 1 anywhere, pixels
+    /// A stored value: darker pixels belong to the set; in a picture with an alpha below 1 anywhere, pixels
     /// of at least this alpha.
     double threshold = 0.5;
     bool light = false; ///< the lighter pixels do

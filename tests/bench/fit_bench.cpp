@@ -46,17 +46,23 @@ bool fill_picture(PlaneMaps& maps, Draws& draws) {
     return true;
 }
 
+/// The whole picture: a grid to draw on.
+CellSet whole_picture() {
+    CellSet set(picture_size, picture_size);
+    set.cells.assign(set.cells.size(), true);
+    return set;
+}
+
+/// The attractor's cells, in the box around them.
 CellSet drawn(const PlaneMaps& maps) {
-    CellSet square(picture_size, picture_size);
-    square.cells.assign(square.cells.size(), true);
-    const Target grid(square);
+    static const Target grid(whole_picture());
+    static AttractorPainter painter(grid);
     PlaneMaps moved = maps;
     for (PlaneMap& map : moved) {
         const Vec2 shift = map({0, 0}) + static_cast<double>(grid.room()) - map(Vec2(grid.room()));
         map.e = shift.x;
         map.f = shift.y;
     }
-    AttractorPainter painter(grid);
     painter.draw(moved);
     CellSet set(grid.width(), grid.height());
     for (const std::uint32_t cell : painter.cells())
@@ -181,7 +187,7 @@ void study(const Case& known, double seconds) {
     const double taken = static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
     AttractorPainter painter(target);
     painter.draw(found.maps);
-    const Agreement agreement = painter.agreement_in_full();
+    const SetAgreement agreement = painter.agreement_in_full();
     std::printf("%s\t%zu\t%zu\t%zu\t%.3f\t%.3f\t%.3f\t%.2f\t%.1f\n", known.name.c_str(), known.maps.size(),
                 target.points().size(), found.maps.size(), agreement.tolerant, agreement.strict,
                 agreement.chamfer, largest_stretch(found.maps), taken);

@@ -70,7 +70,7 @@ TEST(Attractor, FillsTheSquareThatItIs) {
     const Target target(square.set);
     AttractorPainter painter(target);
     painter.draw(square.maps);
-    const Agreement agreement = painter.agreement_in_full();
+    const SetAgreement agreement = painter.agreement_in_full();
     EXPECT_EQ(agreement.tolerant, 1);
     EXPECT_GT(agreement.strict, 0.95);
     EXPECT_LT(agreement.chamfer, 0.05);

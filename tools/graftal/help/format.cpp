@@ -20,7 +20,7 @@ const std::vector<OptionGroup>& option_groups() {
         {"Animation", {"--frames", "--fps", "--turn", "--ease", "--shutter", "--keep-frames"}},
         {"Points",
          {"--points", "--color", "--exposure", "--gamma", "--palette", "--ground", "--light", "--glow",
-          "--transparent", "--card", "--threshold"}},
+          "--transparent", "--card", "--threshold", "--maps", "--similar", "--start"}},
         {"File", {"--limit", "--unit", "--levels", "--nodes", "--instancing", "--plotter"}},
         {"Picture",
          {"--size", "--engine", "--device", "--quality", "--antialias", "--plain-light", "--bits", "--tile",

@@ -45,12 +45,14 @@ class Search {
     FoundSystem run() {
         keep({simplest()});
         if (!options_.start.empty()) keep({judged(options_.start)});
-        gather_copies();
-        cover();
+        for (const double until : {0.03, 0.1, 0.3}) {
+            gather_copies(until);
+            if (!solved()) cover();
+        }
         while (going_on(0.8))
             round();
         polish();
-        for (int batches = 0; fraction() < 1 && !cancel_.raised() && (!solved() || batches < 50); ++batches)
+        for (int batches = 0; fraction() < 1 && !cancel_.raised() && (!solved() || batches < 150); ++batches)
             climb();
         const System& best = lines_.front();
         return {best.maps, best.agreement, seconds()};
@@ -136,9 +138,9 @@ class Search {
         pool_ = distinct(std::move(pool_), target_, 500);
     }
 
-    void gather_copies() {
+    void gather_copies(double until) {
         constexpr std::size_t starts = 256, climbs = 96;
-        while (going_on(0.3)) {
+        while (going_on(until)) {
             std::vector<SelfCopy> before;
             before.swap(pool_);
             find_copies(starts, [&](Task& task, std::size_t) { return copies_.find(task.draws, task.work); });

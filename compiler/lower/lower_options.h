@@ -36,7 +36,7 @@ struct LowerOptions {
     /// Files that a model names, and the model itself, must lie in this folder, with all symbolic links
     /// resolved. Where it is "", they may lie anywhere.
     std::string root;
-    /// Of the root model, an L-system, what is wanted in place of a graph.
+    /// Result that is wanted of the root model, an L-system, in place of a graph.
     enum class InPlace : std::uint8_t { nothing, word, plant };
     InPlace in_place = InPlace::nothing;
     bool exact = false; ///< L-systems are derived module by module: one honest random tree

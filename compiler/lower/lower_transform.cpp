@@ -20,7 +20,7 @@ namespace {
 
 using LineKind = TransformLine::Kind;
 
-/// Those of a line, as many as it has, and zeros.
+/// Numbers of a line, as many as it has, and zeros.
 using Numbers = std::array<double, 24>;
 
 template<std::size_t count>

@@ -81,7 +81,7 @@ Affine map_from_codes(RifsForm form, const std::vector<double>& numbers);
 inline std::size_t control_points(std::size_t codes) {
     return codes == 28 ? 4 : 3;
 }
-/// Those points; they follow the weights.
+/// Control points of such a row: they follow the weights.
 std::vector<Vec3> control_of(const std::vector<double>& codes);
 
 /// Looks up `from`, `start` and `follow` and fills the masters. Errors are reported; false if the digraphs

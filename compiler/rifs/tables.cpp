@@ -22,7 +22,7 @@ struct CodeColumns {
 
 constexpr CodeColumns codes_2d = {RifsForm::codes_2d, "2d", 6, "a b c d e f [p]"};
 constexpr CodeColumns codes_polar = {RifsForm::codes_polar, "polar", 6, "r q theta phi e f [p]"};
-/// Of three control points in the plane; the four of space make 16.
+/// Columns for three control points in the plane; the four of space make 16.
 constexpr CodeColumns codes_barycentric = {RifsForm::codes_barycentric, "barycentric", 9,
                                            "the weights of the control points in the image of each, [p]"};
 constexpr std::size_t weights_in_space = 16;

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/languages/lower.h"
 #include "compiler/support/check.h"
 #include "tests/property/random_graph.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/graph/verify.h"
 #include "compiler/import/importers.h"
 #include "compiler/languages/lower.h"

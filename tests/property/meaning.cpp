@@ -7,7 +7,7 @@
 
 #include "compiler/analysis/contraction.h"
 #include "compiler/graph/components.h"
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/graph/unfold.h"
 #include "compiler/graph/verify.h"
 #include "compiler/passes/renumbering.h"

@@ -11,7 +11,7 @@
 #include "compiler/analysis/bounding.h"
 #include "compiler/analysis/contraction.h"
 #include "compiler/graph/components.h"
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/graph/verify.h"
 #include "compiler/passes/drop_unreachable.h"
 #include "compiler/passes/merge_equivalent.h"

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/graph/components.h"
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/graph/verify.h"
 #include "compiler/languages/lower.h"
 #include "compiler/passes/pipeline.h"

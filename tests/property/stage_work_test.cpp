@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/session/session.h"
 #include "compiler/session/stages.h"
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/support/check.h"
 #include "compiler/support/printable.h"
 #include "runtime/system/file.h"

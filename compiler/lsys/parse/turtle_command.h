@@ -52,7 +52,7 @@ enum class TurtleCommand : std::uint8_t {
     set_tropism,   ///< the elasticity of one of several
     go_to,         ///< a place of the world
     head_to,       ///< a direction of the world
-    // Queries: derivation sets their parameters (derive/queries.h).
+    // Queries: derivation sets their parameters (walk/queries.h).
     ask_place,
     ask_heading,
     ask_up,

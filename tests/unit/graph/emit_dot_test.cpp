@@ -1,4 +1,4 @@
-#include "compiler/graph/emit_dot.h"
+#include "compiler/graph/text/emit_dot.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/support/hue.h"
 #include "tests/unit/inst/inst_model.h"
 

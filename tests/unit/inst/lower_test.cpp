@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "tests/unit/inst/inst_model.h"
 
 namespace graftal {

@@ -7,7 +7,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/inst/scatter_points.h"
 #include "compiler/languages/lower.h"
 

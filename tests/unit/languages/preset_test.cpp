@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/languages/lower.h"
 
 namespace graftal {

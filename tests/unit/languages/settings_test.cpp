@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/languages/lower.h"
 #include "compiler/lower/named_materials.h"
 

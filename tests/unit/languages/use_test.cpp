@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/import/importers.h"
 #include "compiler/languages/lower.h"
 #include "runtime/system/disk_files.h"

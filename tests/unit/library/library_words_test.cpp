@@ -16,9 +16,10 @@ namespace {
 /// Each option that a message of the compiler or of the runtime names has a name in the library, or concerns
 /// the command line only.
 TEST(LibraryWords, AreKnownForEveryOptionThatMessagesName) {
-    static const std::set<std::string> of_commands = {"--aovs",        "--at",   "--card",
-                                                      "--flatten",     "--keep", "--noise",
-                                                      "--progressive", "--tile", "--visible-only"};
+    static const std::set<std::string> of_commands = {
+        "--aovs", "--at",     "--card",        "--boxes",       "--light",
+        "--maps", "--preset", "--threshold",   "--transparent", "--flatten",
+        "--keep", "--noise",  "--progressive", "--tile",        "--visible-only"};
     static const std::regex literal("\"([^\"\\\\]|\\\\.)*\""), option("--[a-z][a-z-]*");
     std::set<std::string> seen;
     for (const char* const folder : {"/compiler", "/runtime"}) {

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "tests/unit/lsys/turtle.h"
 
 namespace graftal {

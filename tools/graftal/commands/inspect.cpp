@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "compiler/graph/emit_dot.h"
-#include "compiler/graph/print.h"
-#include "compiler/graph/print_rifs.h"
+#include "compiler/graph/text/emit_dot.h"
+#include "compiler/graph/text/print.h"
+#include "compiler/graph/text/print_rifs.h"
 #include "compiler/rifs/orbit_model.h"
 #include "compiler/support/printable.h"
 #include "runtime/system/file.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "compiler/lsys/derive/plant.h"
+#include "compiler/lsys/walk/plant.h"
 
 namespace graftal {
 

@@ -1,10 +1,10 @@
-#include "compiler/lsys/derive/written_word.h"
+#include "compiler/lsys/walk/written_word.h"
 
 #include <cctype>
 #include <string_view>
 
 #include "compiler/lsys/derive/deriver.h"
-#include "compiler/lsys/derive/queries.h"
+#include "compiler/lsys/walk/queries.h"
 #include "compiler/support/number.h"
 
 namespace graftal {

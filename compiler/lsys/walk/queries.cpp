@@ -1,4 +1,4 @@
-#include "compiler/lsys/derive/queries.h"
+#include "compiler/lsys/walk/queries.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "compiler/graph/print_rifs.h"
+#include "compiler/graph/text/print_rifs.h"
 
 #include <algorithm>
 #include <cctype>
@@ -12,7 +12,7 @@
 #include "compiler/graph/attributes.h"
 #include "compiler/graph/path.h"
 #include "compiler/graph/primitive.h"
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "compiler/graph/emit_dot.h"
+#include "compiler/graph/text/emit_dot.h"
 
 #include <map>
 #include <string_view>

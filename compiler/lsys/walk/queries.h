@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compiler/environment/environment.h"
-#include "compiler/lsys/derive/walk.h"
+#include "compiler/lsys/walk/walk.h"
 
 namespace graftal {
 

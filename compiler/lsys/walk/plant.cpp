@@ -1,9 +1,9 @@
-#include "compiler/lsys/derive/plant.h"
+#include "compiler/lsys/walk/plant.h"
 
 #include <unordered_map>
 #include <utility>
 
-#include "compiler/lsys/derive/walk.h"
+#include "compiler/lsys/walk/walk.h"
 
 namespace graftal {
 

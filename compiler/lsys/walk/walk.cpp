@@ -1,4 +1,4 @@
-#include "compiler/lsys/derive/walk.h"
+#include "compiler/lsys/walk/walk.h"
 
 #include <algorithm>
 #include <utility>

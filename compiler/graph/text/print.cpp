@@ -1,4 +1,4 @@
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 
 #include <initializer_list>
 #include <span>

@@ -51,13 +51,13 @@ std::string fit_text(const Options& options, const FoundModel& found) {
     return fmt::format(
         "{}: {} maps, each shortens to {:.4f} or less, so the model is proven to contract\n"
         "agreement      IoU {:.3f}, within one cell {:.3f}; Chamfer distance {:.2f} cells\n"
-        "target         {} cells in {}x{}: those with pixels {}; a cell is {:g} pixels wide\n"
+        "target         {} cells in {}x{}: those with pixels {}; a cell is {:g} pixel{} wide\n"
         "collage        epsilon {:.2f} cells; the attractor is at most {:.1f} cells from the target\n"
         "work           {:.1f} s, counted\n",
         options.render.output, found.maps.size(), found.contractivity, found.agreement.strict,
         found.agreement.tolerant, found.agreement.chamfer, found.cells, found.width, found.height,
-        criterion_text(options.points.criterion, found.by_alpha), found.cell, found.epsilon, found.bound,
-        found.seconds);
+        criterion_text(options.points.criterion, found.by_alpha), found.cell, found.cell == 1 ? "" : "s",
+        found.epsilon, found.bound, found.seconds);
 }
 
 } // namespace

@@ -59,7 +59,8 @@ CellSet drawn(const PlaneMaps& maps) {
     static AttractorPainter painter(grid);
     PlaneMaps moved = maps;
     for (PlaneMap& map : moved) {
-        const Vec2 shift = map({0, 0}) + static_cast<double>(grid.room()) - map(Vec2(grid.room()));
+        const Vec2 room(grid.room()), image = map(Vec2(0.0)) + room,
+                                      shift = image - (map(room) - map(Vec2(0.0)));
         map.e = shift.x;
         map.f = shift.y;
     }

@@ -89,6 +89,12 @@ bool reads(const Expression& expression, std::string_view name) {
            std::ranges::any_of(expression.operands, [&](const Expression& one) { return reads(one, name); });
 }
 
+/// Other settings, such as the width, bring no part to another place.
+bool is_of_place(const ModelParameter& parameter) {
+    return parameter.kind != ModelParameter::Kind::setting || parameter.name == "angle" ||
+           parameter.name == "step";
+}
+
 /// A turn or a move without an argument reads the setting of the block.
 bool reads(const LsysString& string, const ModelParameter& parameter) {
     return std::ranges::any_of(string.modules, [&](const LsysModule& module) {
@@ -208,8 +214,8 @@ class Dragger {
                 for (const Expression& parameter : module.parameters)
                     add_numbers(parameter, up, found);
             for (const ModelParameter& parameter : parameters)
-                if (parameter.literal && parameter.span.file == FileId{0} && parameter.name != "steps" &&
-                    parameter.name != "seed" && reads(*rule->string, parameter))
+                if (parameter.literal && parameter.span.file == FileId{0} && is_of_place(parameter) &&
+                    reads(*rule->string, parameter))
                     found.push_back({parameter.span, parameter.value, up});
         }
         std::set<std::uint32_t> met;

@@ -99,12 +99,13 @@ TEST_F(Drag, ADragGoesOnWithTheNumberThatItBeganWith) {
 TEST_F(Drag, ATurnWithoutANumberReadsTheAngleOfTheBlock) {
     std::string text = twig;
     text.replace(text.find("+(40)"), 5, "+");
+    text.replace(text.find("90 //"), 2, "45");
     show(text);
-    const json part = picked(middle(90, 1).x, middle(90, 1).y);
-    const json change = dragged(part, vector_of(part["point"]) + middle(70, 1) - middle(90, 1));
+    const json part = picked(middle(45, 1).x, middle(45, 1).y);
+    const json change = dragged(part, vector_of(part["point"]) + middle(65, 1) - middle(45, 1));
     ASSERT_EQ(change["edits"].size(), 1u) << change;
     EXPECT_EQ(change["edits"][0]["from"], place_in_twig("90 //"));
-    EXPECT_NEAR(std::stod(change["edits"][0]["text"].get<std::string>()), 70, 1);
+    EXPECT_NEAR(std::stod(change["edits"][0]["text"].get<std::string>()), 65, 1);
 }
 
 TEST_F(Drag, WhatTheRulesCannotDoIsRefused) {

@@ -142,7 +142,8 @@ export class PointTool {
       studio.select(edits[0]!.from, edits[0]!.from + edits[0]!.text.length);
       studio.say(String(answer['says']));
     } catch (error) {
-      studio.say((error as Error).message);
+      // A number that has done what it can lets the hand go on.
+      if (this.number === null) studio.say((error as Error).message);
     }
     this.settle();
   }

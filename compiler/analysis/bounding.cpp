@@ -71,7 +71,7 @@ class Bounder {
             const Control& control, std::uint64_t pieces = most_pieces)
         : graph_(graph), components_(components), contraction_(contraction), outers_(graph.objects.size()),
           unbounded_(plane_holders(graph, components)), search_(graph, outers_),
-          effort_(pieces, queries(graph, components)),
+          effort_(pieces, queries(graph, components)), cancel_(control.cancel),
           meter_(control, "bounding", pieces_a_look, StagePrice::piece),
           pieces_of_ball_(std::clamp<std::size_t>(400'000 / graph.objects.size(), 4, 400)),
           wants_ball_(graph.objects.size(), true) {}
@@ -195,7 +195,7 @@ class Bounder {
     void find_ball(ObjectId id) {
         if (!wants_ball_[id]) return;
         meter_.add(graph_.objects[id].instances.size() + pieces_of_ball_);
-        Ball ball = tight_ball(graph_, outers_, id, pieces_of_ball_);
+        Ball ball = tight_ball(graph_, outers_, id, pieces_of_ball_, cancel_);
         ball.radius = within_range(ball.radius * (1 + 4e-12) + 4e-15 * glm::length(ball.centre));
         if (ball.radius < outers_[id].ball().radius) outers_[id].set_ball(ball);
     }
@@ -225,6 +225,7 @@ class Bounder {
     const std::vector<bool> unbounded_;
     SupportSearch search_;
     Effort effort_;
+    const CancelFlag& cancel_;
     WorkMeter meter_;
     std::size_t pieces_of_ball_;
     std::vector<bool> wants_ball_; ///< by object
@@ -257,9 +258,9 @@ std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& co
 }
 
 std::vector<Box> bound_boxes(const Graph& graph, const Components& components, const Contraction& contraction,
-                             std::uint64_t most, std::uint64_t& pieces) {
+                             std::uint64_t most, std::uint64_t& pieces, const Control& control) {
     require_proof(contraction);
-    Bounder bounder(graph, components, contraction, no_control(), most);
+    Bounder bounder(graph, components, contraction, control, most);
     bounder.leave_out_last_balls();
     std::vector<Box> boxes;
     for (const ObjectBounds& bounds : bounder.run())

@@ -41,6 +41,6 @@ std::vector<ObjectBounds> bound_objects(const Graph& graph, const Components& co
 /// The boxes of bound_objects(), with the same requirements. Faster: it looks for no ball of an object that
 /// no other instances. Takes about `most` pieces; `pieces` gets their number.
 std::vector<Box> bound_boxes(const Graph& graph, const Components& components, const Contraction& contraction,
-                             std::uint64_t most, std::uint64_t& pieces);
+                             std::uint64_t most, std::uint64_t& pieces, const Control& control);
 
 } // namespace graftal

@@ -28,7 +28,8 @@ struct Origin {
 
 class Pieces {
   public:
-    Pieces(const Graph& graph, const Outers& outers) : graph_(graph), outers_(outers) {}
+    Pieces(const Graph& graph, const Outers& outers, const CancelFlag& cancel)
+        : graph_(graph), outers_(outers), cancel_(cancel) {}
 
     /// Pieces made so far, those since split included.
     std::size_t made() const { return made_; }
@@ -73,9 +74,10 @@ class Pieces {
 
   private:
     void add(const Ball& ball, const Origin& origin) {
+        constexpr std::size_t made_a_look = 1024;
         balls_.push_back(ball);
         origins_.push_back(origin);
-        ++made_;
+        if (++made_ % made_a_look == 0 && cancel_.raised()) throw Cancelled();
     }
 
     void add_point(Vec3 at) { add({at, 0}, {}); }
@@ -123,6 +125,7 @@ class Pieces {
 
     const Graph& graph_;
     const Outers& outers_;
+    const CancelFlag& cancel_;
     std::vector<Ball> balls_;
     std::vector<Origin> origins_;
     std::size_t made_ = 0;
@@ -130,8 +133,9 @@ class Pieces {
 
 } // namespace
 
-Ball tight_ball(const Graph& graph, const Outers& outers, ObjectId id, std::size_t most_pieces) {
-    Pieces pieces(graph, outers);
+Ball tight_ball(const Graph& graph, const Outers& outers, ObjectId id, std::size_t most_pieces,
+                const CancelFlag& cancel) {
+    Pieces pieces(graph, outers, cancel);
     pieces.add_instances(id, Affine{});
     Ball best = smallest_ball(pieces.balls());
     Ball current = best;

@@ -55,7 +55,7 @@ PreparedCut prepare_cut(const Graph& graph, const Components& components,
     PreparedCut prepared;
     BoundedGraph passed = run_passes(detail_passes(options.keeps_objects), {graph, bounds},
                                      {.stop_after = {}, .after_each = after_each}, nullptr, &meter);
-    CutGraph& cut = prepared.cut = build_cut_graph(std::move(passed.graph), passed.bounds);
+    CutGraph& cut = prepared.cut = build_cut_graph(std::move(passed.graph), passed.bounds, &meter);
     if (!options.steps) drop_endings(cut);
     prepared.symmetry = find_symmetry(cut);
     meter.add(prepared.symmetry.comparisons);

@@ -104,13 +104,14 @@ class Measurer {
         }
     }
 
-    SelfShadows run(int steps) {
+    SelfShadows run(int steps, const CancelFlag& cancel) {
         if (lights_.empty()) return {};
         // The R2 sequence covers the picture evenly at any length.
         const double g = 1.32471795724474602596;
         double hits = 0;
         for (std::uint64_t i = 0; i < most_rays && hits < enough_hits; ++i) {
             if (culled_.work() + whole_.work() > most_work_) break;
+            if (cancel.raised()) throw Cancelled();
             const auto n = static_cast<double>(i);
             const auto part = [&](double slope) { return std::fmod(0.5 + n * slope, 1.0); };
             const Ray ray = camera_ray(part(1 / g), part(1 / (g * g)));
@@ -229,8 +230,9 @@ double SelfShadows::share_within(double outer, NodeId node, double detail, doubl
 }
 
 SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
-                                 const View& view, bool limit_normals, int steps, std::uint64_t most_work) {
-    return Measurer(cut, symmetry, root_steps, view, limit_normals, most_work).run(steps);
+                                 const View& view, bool limit_normals, int steps, std::uint64_t most_work,
+                                 const CancelFlag& cancel) {
+    return Measurer(cut, symmetry, root_steps, view, limit_normals, most_work).run(steps, cancel);
 }
 
 std::uint64_t self_shadow_work(double work_seconds) {

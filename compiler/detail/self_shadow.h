@@ -8,6 +8,7 @@
 #include "compiler/detail/graph/cut_graph.h"
 #include "compiler/detail/graph/symmetry.h"
 #include "compiler/scene/scene.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -51,10 +52,11 @@ inline constexpr std::uint64_t most_self_shadow_work = 8'000'000;
 /// all. Shares are rounded to `steps`. Ambient light does not count; of light from all directions a list
 /// stands for it. Nothing is measured without lights that throw shadows.
 ///
-/// Requires fit_proxies(). Work: at most `most_work` parts are gone by.
+/// Requires fit_proxies(). Work: at most `most_work` parts are gone by. The flag ends it by Cancelled.
 SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
                                  const View& view, bool limit_normals, int steps,
-                                 std::uint64_t most_work = most_self_shadow_work);
+                                 std::uint64_t most_work = most_self_shadow_work,
+                                 const CancelFlag& cancel = {});
 
 /// Self-shadows may take so much of the work allowed for a picture.
 std::uint64_t self_shadow_work(double work_seconds);

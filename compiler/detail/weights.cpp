@@ -20,6 +20,8 @@ const Weights::Weight endless{boundless, boundless, boundless, boundless};
 /// Least limit of kinds, in edges of the graph; and the factor by which the steps of details get coarser
 /// where there are too many kinds.
 constexpr std::uint64_t visits_an_edge = 2;
+/// Visits after which the control is asked: some milliseconds.
+constexpr std::uint64_t visits_a_look = 20'000;
 constexpr int coarser_grain = 4;
 /// Details beyond this are not told apart.
 constexpr std::int32_t largest_step = 1 << 24;
@@ -36,8 +38,8 @@ constexpr int few_octaves = 5, many_octaves = 13;
 
 } // namespace
 
-Weights::Weights(const CutGraph& cut, const WeightOptions& options)
-    : cut_(cut), options_(options), grain_(options.grain) {
+Weights::Weights(const CutGraph& cut, const WeightOptions& options, const Control& control)
+    : cut_(cut), options_(options), meter_(control, "weights", visits_a_look), grain_(options.grain) {
     // A proxy's mesh is an octahedron.
     proxy_ = {8, 1, 0, price(PrimitiveKind::sphere)};
     diameter_step_.reserve(cut.nodes.size());
@@ -237,6 +239,7 @@ bool Weights::weigh(std::uint32_t start) {
         if (frame.next_edge < edges.size()) {
             const PieceKind next = child_kind(kind, edges[frame.next_edge++]);
             ++visits_;
+            meter_.add();
             if (const EdgeCell* const cell = cut_.nodes[next.node].cell.get(); cell && !is_cut(next)) {
                 frame.sum += of_cell(next, *cell);
                 continue;

@@ -8,6 +8,7 @@
 #include "compiler/detail/graph/cut_graph.h"
 #include "compiler/detail/graph/piece_kind.h"
 #include "compiler/detail/shell/sizes.h"
+#include "compiler/support/control.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {
@@ -32,7 +33,9 @@ struct WeightOptions {
 /// no more than some millions.
 class Weights {
   public:
-    explicit Weights(const CutGraph& cut, const WeightOptions& options = {});
+    /// Keeps references to both.
+    explicit Weights(const CutGraph& cut, const WeightOptions& options = {},
+                     const Control& control = no_control());
 
     struct Weight {
         double triangles = 0;
@@ -109,6 +112,7 @@ class Weights {
 
     const CutGraph& cut_;
     WeightOptions options_;
+    WorkMeter meter_;
     Weight proxy_;
     std::vector<double> diameter_step_; ///< by node
     std::vector<double> cut_step_;      ///< by node, of cut_detail()

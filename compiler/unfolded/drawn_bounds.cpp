@@ -19,6 +19,8 @@ namespace {
 /// Edges of graphs with more than this many are bounded by the boxes of their children's boxes, the others by
 /// what they hold.
 constexpr std::size_t most_exact_edges = 5000;
+/// Edges after which the control is asked: some milliseconds.
+constexpr std::uint64_t edges_a_look = 5000;
 
 Instance instance_of(const CutEdge& edge) {
     Instance instance;
@@ -46,8 +48,9 @@ std::size_t edge_count(const CutGraph& cut) {
 
 class Bounder {
   public:
-    Bounder(const CutGraph& cut, std::uint64_t most_pieces)
-        : cut_(cut), exact_(edge_count(cut) <= most_exact_edges), most_pieces_(most_pieces) {
+    Bounder(const CutGraph& cut, std::uint64_t most_pieces, const Control& control)
+        : cut_(cut), control_(control), exact_(edge_count(cut) <= most_exact_edges),
+          most_pieces_(most_pieces) {
         graph_.root = cut.root;
         for (const CutNode& node : cut.nodes) {
             Object object;
@@ -88,6 +91,7 @@ class Bounder {
                     if (needs_object(edge)) add_object(edge);
         bound();
         DrawnBounds result;
+        WorkMeter meter(control_, "bounding", edges_a_look);
         result.pieces = pieces_;
         std::size_t next = nodes + 2;
         for (const CutNode& node : cut_.nodes) {
@@ -96,6 +100,7 @@ class Bounder {
                 std::vector<Box>& boxes = (stop ? result.stop_edge : result.edge).emplace_back();
                 for (const CutEdge& edge : stop ? node.stop_edges : node.edges)
                     boxes.push_back(needs_object(edge) ? boxes_[next++] : box_of(edge));
+                meter.add(boxes.size());
             }
         }
         return result;
@@ -104,10 +109,10 @@ class Bounder {
   private:
     void bound() {
         const Components components = strong_components(graph_);
-        const Contraction contraction = decide_contraction(graph_, components);
+        const Contraction contraction = decide_contraction(graph_, components, control_);
         const bool proved = contraction.verdict == Verdict::acyclic || contraction.verdict == Verdict::proved;
-        boxes_ =
-            proved ? bound_boxes(graph_, components, contraction, most_pieces_, pieces_) : boxes_by_balls();
+        boxes_ = proved ? bound_boxes(graph_, components, contraction, most_pieces_, pieces_, control_)
+                        : boxes_by_balls();
     }
 
     /// The model contracts, but this is another graph of it, and the effort that is spent on a proof is
@@ -151,6 +156,7 @@ class Bounder {
     }
 
     const CutGraph& cut_;
+    const Control& control_;
     bool exact_;
     const std::uint64_t most_pieces_;
     std::uint64_t pieces_ = 0;
@@ -188,8 +194,8 @@ Box box_about_image(const Primitive& primitive, const Affine& place) {
     return box_by(primitive, place, reach ? reach : primitive_support);
 }
 
-DrawnBounds drawn_bounds(const CutGraph& cut, std::uint64_t most_pieces) {
-    return Bounder(cut, most_pieces).run();
+DrawnBounds drawn_bounds(const CutGraph& cut, std::uint64_t most_pieces, const Control& control) {
+    return Bounder(cut, most_pieces, control).run();
 }
 
 } // namespace graftal

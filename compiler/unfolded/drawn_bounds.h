@@ -6,6 +6,7 @@
 #include "compiler/analysis/bounding.h"
 #include "compiler/detail/graph/cut_graph.h"
 #include "compiler/support/bounds.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -33,6 +34,7 @@ Box box_about_image(const Primitive& primitive, const Affine& place);
 
 /// Requires a graph whose cycles contract. O(graph), and about as many pieces as are allowed: fewer make
 /// larger boxes.
-DrawnBounds drawn_bounds(const CutGraph& cut, std::uint64_t most_pieces = graftal::most_pieces);
+DrawnBounds drawn_bounds(const CutGraph& cut, std::uint64_t most_pieces = graftal::most_pieces,
+                         const Control& control = no_control());
 
 } // namespace graftal

@@ -49,10 +49,11 @@ PicturePlan plan_picture(const PreparedView& prepared, const PictureWishes& wish
     return plan;
 }
 
-FittedModel fit_picture(const PreparedView& prepared, const PictureWishes& wishes, const PicturePlan& plan,
-                        const Workers& workers, const std::function<bool()>& cancelled,
-                        const std::function<void(const TraceModel&, double)>& on_first_look,
-                        std::shared_ptr<TraceGround> ground) {
+std::optional<FittedModel> fit_picture(const PreparedView& prepared, const PictureWishes& wishes,
+                                       const PicturePlan& plan, const Workers& workers,
+                                       const std::function<bool()>& cancelled,
+                                       const std::function<void(const TraceModel&, double)>& on_first_look,
+                                       std::shared_ptr<TraceGround> ground) {
     return fit_work(
         {.prepared = prepared.prepared,
          .view = prepared.viewed->view,

@@ -58,11 +58,12 @@ struct PicturePlan {
 };
 PicturePlan plan_picture(const PreparedView& prepared, const PictureWishes& wishes);
 
-/// Fits the model and the samples to the work. The last four are those of FitRequest.
-FittedModel fit_picture(const PreparedView& prepared, const PictureWishes& wishes, const PicturePlan& plan,
-                        const Workers& workers, const std::function<bool()>& cancelled,
-                        const std::function<void(const TraceModel&, double)>& on_first_look = {},
-                        std::shared_ptr<TraceGround> ground = nullptr);
+/// Fits the model and the samples to the work, as fit_work() does. The last four are those of FitRequest.
+std::optional<FittedModel>
+fit_picture(const PreparedView& prepared, const PictureWishes& wishes, const PicturePlan& plan,
+            const Workers& workers, const std::function<bool()>& cancelled,
+            const std::function<void(const TraceModel&, double)>& on_first_look = {},
+            std::shared_ptr<TraceGround> ground = nullptr);
 
 /// The values of a fitted model that model_of() needs to make it again, without a ray.
 PictureFit fit_of(const FittedModel& fitted, ImageSize size);

@@ -61,7 +61,7 @@ Price between(const Price& a, const Price& b, double share) {
 class Fitting {
   public:
     explicit Fitting(FitRequest request)
-        : ask_(std::move(request)),
+        : ask_(std::move(request)), cancel_(ask_.cancelled),
           pixels_(static_cast<double>(ask_.view.size.width) * ask_.view.size.height),
           work_seconds_(work_after_stages(ask_.options.work_seconds, ask_.prepared->work_seconds)),
           slowness_(slowness_of_graph(ask_.prepared->instances)) {}
@@ -95,7 +95,7 @@ class Fitting {
         fitted_.sampling = affordable_sampling(ask_.wanted, samples_for(price_));
         if (is_almost_affordable(best.sampling)) fitted_.sampling = best.sampling;
         while (price_.known && !fits(fitted_.sampling) && !is_almost_affordable(fitted_.sampling) &&
-               fitted_.model->most_visits > fewest_visits && !cancelled()) {
+               fitted_.model->most_visits > fewest_visits) {
             const std::uint64_t fewer = price_.of(fitted_.sampling.samples_a_pixel()) > 4 * allowed() ? 4 : 2;
             fitted_.model->most_visits = std::max(fitted_.model->most_visits / fewer, fewest_visits);
             fitted_.rays_cut = true;
@@ -118,7 +118,7 @@ class Fitting {
     /// Tries larger and larger errors, as long as they may still win.
     Choice best_choice() {
         Choice best = choice(factor_, price_);
-        for (int tries = 1; factor_ < coarsest && !cancelled(); ++tries) {
+        for (int tries = 1; factor_ < coarsest; ++tries) {
             if (!(std::log2(factor_ * coarser) < best.loss)) break;
             if (tried_seconds_ > most_for_looks * work_seconds_ && best.loss < infinite_loss) break;
             const double factor_before = factor_;
@@ -181,12 +181,13 @@ class Fitting {
         if (options.error_world) *options.error_world *= factor;
         try {
             if (!ground_) {
-                ground_ = ask_.ground ? ask_.ground
-                                      : std::make_shared<TraceGround>(*ask_.prepared, options.work_seconds);
+                ground_ = ask_.ground
+                              ? ask_.ground
+                              : std::make_shared<TraceGround>(*ask_.prepared, options.work_seconds, cancel_);
                 tried_seconds_ += StagePrice::piece * static_cast<double>(ground_->bounds.pieces);
             }
-            fitted_.model =
-                std::make_unique<TraceModel>(ask_.prepared, ask_.view, options, ask_.textures, ground_);
+            fitted_.model = std::make_unique<TraceModel>(ask_.prepared, ask_.view, options, ask_.textures,
+                                                         ground_, cancel_);
             tried_seconds_ +=
                 slowness_ * (static_cast<double>(fitted_.model->weighed) / WorkRates::kinds +
                              static_cast<double>(fitted_.model->edges.size()) / WorkRates::trace_edges);
@@ -206,13 +207,11 @@ class Fitting {
         if (measured_ || !(fitted_.model->projection.error_px() > SelfShadows::lit_as_px)) return;
         measured_ = true;
         tried_seconds_ +=
-            static_cast<double>(fitted_.model->self_shadows().work()) / WorkRates::parts_gone_by;
+            static_cast<double>(fitted_.model->self_shadows(cancel_).work()) / WorkRates::parts_gone_by;
     }
 
     /// The work that trying has left: half in any case.
     double allowed() const { return std::max(work_seconds_ - tried_seconds_, 0.5 * work_seconds_); }
-
-    bool cancelled() const { return ask_.cancelled(); }
 
     static double shell_seconds(const TraceModel& model) {
         return static_cast<double>(model.meshes.shell_work()) / WorkRates::shell_points;
@@ -238,7 +237,7 @@ class Fitting {
         PictureTracer tracer(model, ask_.limits_of(model));
         Price price;
         std::uint64_t rays = 0;
-        while (rays < last && price.known && !cancelled()) {
+        while (rays < last && price.known) {
             const double spent = static_cast<double>(tracer.statistics().work);
             std::uint64_t piece = first_piece;
             if (rays > 0) {
@@ -285,10 +284,11 @@ class Fitting {
         const auto too_many_shells = [&] {
             return ask_.options.culls() && shell_seconds(model) > most_shells;
         };
-        control.cancelled = [&] { return cancelled() || too_many_shells(); };
+        control.cancelled = [&] { return cancel_.raised() || too_many_shells(); };
         if (ask_.options.culls())
             model.meshes.make_until(static_cast<std::uint64_t>(most_shells * WorkRates::shell_points));
         tracer.probe(begin, end, control);
+        if (cancel_.raised()) throw Cancelled();
         model.meshes.make_until(UINT64_MAX);
         if (too_many_shells()) { // how many there are by now depends on the threads
             tried_seconds_ += most_shells;
@@ -303,6 +303,7 @@ class Fitting {
     static constexpr double infinite_loss = std::numeric_limits<double>::infinity();
 
     FitRequest ask_;
+    const CancelFlag cancel_;
     const double pixels_;
     const double work_seconds_; ///< for the rays, and for what is tried
     const double slowness_;     ///< of their steps
@@ -319,8 +320,12 @@ class Fitting {
 
 } // namespace
 
-FittedModel fit_work(FitRequest request) {
-    return Fitting(std::move(request)).run();
+std::optional<FittedModel> fit_work(FitRequest request) {
+    try {
+        return Fitting(std::move(request)).run();
+    } catch (const Cancelled&) {
+        return std::nullopt;
+    }
 }
 
 } // namespace graftal

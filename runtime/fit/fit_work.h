@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "compiler/support/workers.h"
 #include "runtime/fit/samplings.h"
@@ -32,7 +33,7 @@ struct FitRequest {
     Sampling wanted;
     std::function<ShaderLimits(const TraceModel&)> limits_of;
     const Workers* workers = nullptr; ///< null: the thread that asks works alone
-    std::function<bool()> cancelled;  ///< asked often; once it says true, any model comes back
+    std::function<bool()> cancelled;  ///< asked often, by many threads
     /// If it is set, called once, after the first few rays: with a model, and the seconds that one sample for
     /// each pixel of its picture seems to take. Nothing that it does with the model changes the result,
     /// unless it has shells made.
@@ -44,7 +45,7 @@ struct FitRequest {
 /// options.work_seconds, it culls more and takes fewer samples, so that the picture looks least the worse
 /// for it (loss_of_samples()); at last it gives rays up earlier. It also culls more where a model takes more
 /// memory than there is (`out_of_memory`). If none fits, it throws std::bad_alloc. Only counts decide, so
-/// the result is the same whatever the machine and its threads.
-FittedModel fit_work(FitRequest request);
+/// the result is the same whatever the machine and its threads. Nothing where `cancelled` said true.
+std::optional<FittedModel> fit_work(FitRequest request);
 
 } // namespace graftal

@@ -314,10 +314,16 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
             compilation.status =
                 drawing.look(draft.rough ? *draft.rough : tried, draft.looks, plan.wanted.samples_a_pixel());
         };
-    const FittedModel fitted = fit_picture(
+    const std::optional<FittedModel> fit = fit_picture(
         prepared, options, plan, WorkerThreads(options.threads),
         [&] { return cancel.raised() || !compilation.status.ok(); }, on_first_look);
-    if (!compilation.status.ok() && !cancel.raised()) return std::nullopt;
+    if (!fit) { // pictures of its first looks stay
+        if (compilation.status.ok()) compilation.status = Status::failure("interrupted");
+        NativeReport report = drawing.report();
+        report.first_picture_seconds += seconds_before;
+        return cancel.raised() && report.pictures > 0 ? std::optional(report) : std::nullopt;
+    }
+    const FittedModel& fitted = *fit;
     const TraceModel& model = *fitted.model;
     const Asked asked{graph.objects[graph.root].span, view.size, window_of(options, view.size).pixels(), plan,
                       options.is_by_default(view.quality)};
@@ -352,9 +358,9 @@ std::optional<PictureFit> fit_natively(PictureSession& session, const RenderOpti
     if (!prepare_view(session, options, model, compilation)) return std::nullopt;
     const CancelFlag cancel = session.control().cancel;
     const PicturePlan plan = plan_picture(model, options);
-    const FittedModel fitted =
+    const std::optional<FittedModel> fitted =
         fit_picture(model, options, plan, WorkerThreads(options.threads), [&] { return cancel.raised(); });
-    if (cancel.raised()) {
+    if (!fitted) {
         compilation.status = Status::failure("interrupted");
         return std::nullopt;
     }
@@ -362,9 +368,9 @@ std::optional<PictureFit> fit_natively(PictureSession& session, const RenderOpti
     const ImageSize size = model.viewed->view.size;
     const Asked asked{graph.objects[graph.root].span, size, whole_of(size).pixels(), plan,
                       options.is_by_default(model.viewed->view.quality)};
-    report_work(fitted, asked, compilation.diagnostics);
-    report_size(fitted, asked, compilation.diagnostics);
-    return fit_of(fitted, size);
+    report_work(*fitted, asked, compilation.diagnostics);
+    report_size(*fitted, asked, compilation.diagnostics);
+    return fit_of(*fitted, size);
 }
 
 } // namespace graftal

@@ -42,6 +42,14 @@ double swept_by_steps(double from, double to, double step, double t) {
     return from <= to ? from + done * step : from - done * step;
 }
 
+double swept_by_keys(const std::vector<SweepKey>& keys, double t) {
+    const auto after = std::ranges::find_if(keys, [&](const SweepKey& key) { return key.t > t; });
+    if (after == keys.begin()) return keys.front().value;
+    if (after == keys.end()) return keys.back().value;
+    const SweepKey &a = after[-1], &b = *after;
+    return swept(a.value, b.value, (t - a.t) / (b.t - a.t));
+}
+
 double eased(Ease ease, double t) {
     return ease == Ease::smooth ? t * t * (3 - 2 * t) : t;
 }

@@ -32,6 +32,14 @@ std::uint64_t swept_whole(std::uint64_t from, std::uint64_t to, double t);
 /// `from` and all that lie a whole number of steps from it on the way, each for an equal part of the time.
 double swept_by_steps(double from, double to, double step, double t);
 
+/// A value that runs evenly from one key to the next: before the first and after the last it stays. Requires
+/// keys, by their times.
+struct SweepKey {
+    double t = 0;
+    double value = 0;
+};
+double swept_by_keys(const std::vector<SweepKey>& keys, double t);
+
 /// Course of time on the way.
 enum class Ease {
     linear,

@@ -7,11 +7,14 @@
 
 namespace graftal {
 
-/// The words of a command line that does this with the state's model: "render" or "export". Its text is to be
-/// saved under its name.
+/// The words of a command line that does this with the state's model: "render", "animate" or "export". Its
+/// text is to be saved under its name.
 std::vector<std::string> command_words(const StudioState& state, const std::string& command);
 
-/// The command line that draws the state's picture, once its text is saved under its name; for a shell.
-std::string command_line(const StudioState& state);
+/// The words that make a film of it: the field `film` of an ask (docs/studio.md). Throws BadMessage.
+std::vector<std::string> film_words(StudioState state, const nlohmann::json& film);
+
+/// The command line of these words, once the text is saved under its name; for a shell.
+std::string command_line(const std::vector<std::string>& words);
 
 } // namespace graftal

@@ -58,10 +58,12 @@ FileJob file_job(const StudioState& state, const nlohmann::json& ask) {
     FileJob job{{}, {state.name, *state.text}, fields.text("path").value_or(""), {}};
     job.suffix = job.path.empty() ? fields.needed_text("suffix") : ending_of(job.path);
     if (!job.suffix.starts_with('.')) job.suffix = "." + job.suffix;
+    const nlohmann::json* const film = fields.object("film");
+    const bool is_folder = film && job.path.ends_with('/');
     const bool is_letters =
         std::ranges::all_of(job.suffix.substr(1), [](unsigned char c) { return std::isalnum(c); });
     constexpr std::size_t longest = 8;
-    if (job.suffix.size() < 2 || job.suffix.size() > longest || !is_letters)
+    if (!is_folder && (job.suffix.size() < 2 || job.suffix.size() > longest || !is_letters))
         throw BadMessage("the file's name needs an ending, such as .png");
     StudioState shown = state;
     ImageSize& size = shown.stages.view.size;
@@ -71,6 +73,10 @@ FileJob file_job(const StudioState& state, const nlohmann::json& ask) {
     size.height = static_cast<int>(std::max<std::uint64_t>(
         1, fields.whole("height", most_side).value_or(static_cast<std::uint64_t>(size.height))));
     const bool is_picture = job.suffix == ".png" || job.suffix == ".exr";
+    if (film) {
+        job.words = film_words(std::move(shown), *film);
+        return job;
+    }
     job.words = command_words(shown, is_picture ? "render" : "export");
     if (const nlohmann::json* const options = fields.object("options"))
         add_options(*options, is_picture, job.words);

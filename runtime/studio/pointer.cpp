@@ -114,19 +114,19 @@ nlohmann::json Pointer::pick(double x, double y) {
     const Graph& graph = viewed->model->graph;
     std::vector<GraphStep> path = whole_path(*viewed, met->path);
     Span span;
-    nlohmann::json names = nlohmann::json::array();
+    nlohmann::json names = nlohmann::json::array(), part = nlohmann::json::array();
     for (const GraphStep& step : path) {
+        part.push_back(step.instance);
         const Instance& instance = graph.objects[step.object].instances[step.instance];
         if (instance.span.known()) span = instance.span;
         if (!graph.objects[instance.master].primitive) names.push_back(graph.objects[instance.master].name);
     }
     while (!path.empty() && graph.objects[end_of(graph, path)].primitive)
         path.pop_back();
-    nlohmann::json answer{{"point", vector_json(met->point)},
-                          {"normal", vector_json(met->normal)},
-                          {"address", address_of(graph, path)},
-                          {"object", graph.objects[end_of(graph, path)].name},
-                          {"path", std::move(names)}};
+    nlohmann::json answer{
+        {"point", vector_json(met->point)},   {"normal", vector_json(met->normal)},
+        {"address", address_of(graph, path)}, {"object", graph.objects[end_of(graph, path)].name},
+        {"path", std::move(names)},           {"part", std::move(part)}};
     if (span.known() && span.file == FileId{0}) {
         const TextPositions positions(compilation_.sources.text(span.file));
         answer["from"] = positions.utf16_of(span.begin);

@@ -101,10 +101,10 @@ ProgressivePicture::ProgressivePicture(PreparedView prepared, const PictureWishe
       seconds_a_sample_(seconds_a_sample) {}
 
 bool ProgressivePicture::step(const std::function<bool()>& cancelled, const std::function<bool()>& for_good,
-                              const PictureListener& listener) {
+                              const PictureListener& listener) try {
     switch (phase_) {
     case Phase::begin:
-        begin(cancelled);
+        begin(cancelled, for_good);
         return true;
     case Phase::fit:
         fit(for_good);
@@ -118,11 +118,15 @@ bool ProgressivePicture::step(const std::function<bool()>& cancelled, const std:
         break;
     }
     return false;
+} catch (const Cancelled&) {
+    return true;
 }
 
 /// Makes the rough model, and learns what its rays take.
-void ProgressivePicture::begin(const std::function<bool()>& cancelled) {
+void ProgressivePicture::begin(const std::function<bool()>& cancelled,
+                               const std::function<bool()>& for_good) {
     if (!rough_) {
+        const CancelFlag cancel(for_good);
         DetailOptions options = plan_.detail;
         if (options.culls()) {
             options.error_px *= rough_error;
@@ -130,9 +134,10 @@ void ProgressivePicture::begin(const std::function<bool()>& cancelled) {
         }
         // Bounds and shadows take shares of the work, and nothing ends them early.
         options.work_seconds = std::min(options.work_seconds, rough_work_seconds);
-        if (!ground_) ground_ = std::make_shared<TraceGround>(*prepared_.prepared, options.work_seconds);
-        rough_ =
-            std::make_unique<TraceModel>(prepared_.prepared, view(), options, prepared_.textures, ground_);
+        if (!ground_)
+            ground_ = std::make_shared<TraceGround>(*prepared_.prepared, options.work_seconds, cancel);
+        rough_ = std::make_unique<TraceModel>(prepared_.prepared, view(), options, prepared_.textures,
+                                              ground_, cancel);
         rough_->most_visits = std::min(rough_->most_visits, rough_visits);
     }
     if (!(seconds_a_sample_ > 0)) probe(cancelled);
@@ -248,9 +253,9 @@ void ProgressivePicture::plan_rough() {
 }
 
 void ProgressivePicture::fit(const std::function<bool()>& for_good) {
-    FittedModel fitted = fit_picture(prepared_, wishes_, plan_, workers_(), for_good);
-    if (for_good()) return;
-    fitted_ = std::move(fitted);
+    std::optional<FittedModel> fitted = fit_picture(prepared_, wishes_, plan_, workers_(), for_good);
+    if (!fitted) return;
+    fitted_ = *std::move(fitted);
     rough_.reset();
     plan_fine();
 }

@@ -54,7 +54,7 @@ class ProgressivePicture {
 
     /// Does the next piece. `cancelled` is asked before each ray, by all workers; a piece that it ends is
     /// done again, apart from samples that are there. False: the picture was finished already. `for_good`
-    /// says that the whole picture is not wanted any more: the fit asks only that.
+    /// says that the whole picture is not wanted any more: models are made, and fitted, until it says so.
     bool step(const std::function<bool()>& cancelled, const std::function<bool()>& for_good,
               const PictureListener& listener);
 
@@ -78,7 +78,7 @@ class ProgressivePicture {
         std::vector<NoiseMeter> meters; ///< where light is sampled; empty before
     };
 
-    void begin(const std::function<bool()>& cancelled);
+    void begin(const std::function<bool()>& cancelled, const std::function<bool()>& for_good);
     void probe(const std::function<bool()>& cancelled);
     void fit(const std::function<bool()>& for_good);
     bool trace(const std::function<bool()>& cancelled, const PictureListener& listener);

@@ -367,7 +367,10 @@ bool StudioSession::answer_next() {
                 thumbnails_.push_back(thumbnail_of(ask));
             return true;
         }
-        message.update(answer(ask));
+        if (ask.what == "stop")
+            file_stopped_ = true;
+        else
+            message.update(answer(ask));
     } catch (const std::bad_alloc&) {
         message["error"] = "graftal has too little memory for an answer";
     } catch (const std::exception& fault) { // BadMessage, or a broken invariant
@@ -397,6 +400,7 @@ void StudioSession::start_file(const Ask& ask) {
         const std::lock_guard lock(inbox_);
         if (writing_) throw BadMessage("another file is being made");
         writing_.emplace().id = ask.id;
+        file_stopped_ = false;
     }
     const auto note = [this](const auto& change) {
         const std::lock_guard lock(inbox_);
@@ -404,7 +408,7 @@ void StudioSession::start_file(const Ask& ask) {
         if (wake_) wake_();
     };
     home_.make_file(
-        std::move(job), CancelFlag([this] { return stopped_.load(); }),
+        std::move(job), CancelFlag([this] { return stopped_ || file_stopped_; }),
         [note](double share) { note([&](Writing& writing) { writing.share = share; }); },
         [note](FileResult result) { note([&](Writing& writing) { writing.result = std::move(result); }); });
 }
@@ -462,7 +466,11 @@ nlohmann::json StudioSession::answer(const Ask& ask) {
             throw BadMessage("'factor' is out of range");
         return pointer_.zoom(fields.needed_number("x"), fields.needed_number("y"), factor);
     }
-    if (ask.what == "command") return {{"command", command_line(state_)}};
+    if (ask.what == "command") {
+        const nlohmann::json* const film = fields.object("film");
+        return {
+            {"command", command_line(film ? film_words(state_, *film) : command_words(state_, "render"))}};
+    }
     throw BadMessage(fmt::format("there is no ask '{}'", ask.what));
 }
 

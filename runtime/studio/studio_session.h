@@ -131,6 +131,7 @@ class StudioSession {
     std::atomic<bool> stale_ = false;   ///< a newer state was heard
     std::atomic<bool> waiting_ = false; ///< asks or faults were heard
     std::atomic<bool> stopped_ = false;
+    std::atomic<bool> file_stopped_ = false; ///< nobody wants the file any more
 
     Stage stage_ = Stage::nothing;
     StudioState state_; ///< with its text

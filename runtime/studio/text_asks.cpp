@@ -8,6 +8,7 @@
 
 #include "compiler/editing/complete.h"
 #include "compiler/editing/document.h"
+#include "compiler/editing/drag.h"
 #include "compiler/editing/format.h"
 #include "compiler/editing/hover.h"
 #include "compiler/editing/maps/maps.h"
@@ -39,6 +40,7 @@ class TextAsk {
         if (what == "map")
             return change_json(move_map(document_, fields_.needed_text("name"), matrix(), asked_.context));
         if (what == "pull") return pulled();
+        if (what == "drag") return part_dragged();
         if (what == "digraph") return toggled();
         return varied();
     }
@@ -117,6 +119,32 @@ class TextAsk {
         return change_json(pull(document_, fields_.needed_text("address"), *from, *to, asked_.context));
     }
 
+    Json part_dragged() const {
+        const std::optional<Vec3> from = fields_.vector("from"), to = fields_.vector("to");
+        if (!from || !to) throw BadMessage("'from' or 'to' is missing");
+        DraggedPart part{instances(), *from, *to};
+        if (const auto number = fields_.whole("number", UINT32_MAX))
+            part.number = positions_.byte_of(static_cast<std::uint32_t>(*number));
+        const DragChange change = drag_part(document_, part, asked_.context);
+        if (!change.refusal.empty()) throw BadMessage(change.refusal);
+        return {{"edits", edits_json(change.edits)},
+                {"number", positions_.utf16_of(change.number)},
+                {"point", vector_json(change.point)},
+                {"says", change.says}};
+    }
+
+    std::vector<std::uint32_t> instances() const {
+        std::vector<std::uint32_t> numbers;
+        const auto found = ask_.find("part");
+        if (found == ask_.end() || !found->is_array()) throw BadMessage("'part' is no list of numbers");
+        for (const Json& number : *found) {
+            if (!number.is_number_unsigned() || number.get<std::uint64_t>() > UINT32_MAX)
+                throw BadMessage("'part' is no list of numbers");
+            numbers.push_back(number.get<std::uint32_t>());
+        }
+        return numbers;
+    }
+
     Json toggled() const {
         const std::optional<bool> edge = fields_.flag("edge");
         if (!edge) throw BadMessage("'edge' is missing");
@@ -174,8 +202,8 @@ Json matrix_json(const Affine& map) {
 } // namespace
 
 bool is_about_text(const std::string& what) {
-    constexpr std::string_view known[] = {"complete", "hover", "definition", "rename", "format",
-                                          "map",      "pull",  "digraph",    "vary"};
+    constexpr std::string_view known[] = {"complete", "hover", "definition", "rename",  "format",
+                                          "map",      "pull",  "drag",       "digraph", "vary"};
     return std::ranges::find(known, what) != std::end(known);
 }
 

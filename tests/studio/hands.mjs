@@ -14,12 +14,17 @@ export async function open_browser(modules) {
   return chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox', '--disable-gpu'] });
 }
 
-/** Gives the function that makes one test: `serve` opens a session for it, with an `address` and a `close`. */
+/** Tests that run at once, each with a page of its own: a page mostly waits. */
+const together = 3;
+
+/** Gives the function that notes one test: `serve` opens a session for it, with an `address` and a `close`. */
 export function tester(browser, serve) {
-  const counts = { passed: 0, failed: 0 };
-  /** `check` gets a hand on a page of its own. */
-  async function test(name, check, { width = 1280, height = 720, dark = false, opened, hash = '', touch = false, ready = 'body[data-picture=done]' } = {}) {
-    if (process.env.ONLY && !name.includes(process.env.ONLY)) return;
+  const counts = { passed: 0, failed: 0 }, noted = [];
+  /** `check` gets a hand on a page of its own. `alone`: nothing else runs meanwhile. */
+  function test(name, check, options = {}) {
+    if (!process.env.ONLY || name.includes(process.env.ONLY)) noted.push({ name, check, ...options });
+  }
+  async function run({ name, check, width = 1280, height = 720, dark = false, opened, hash = '', touch = false, ready = 'body[data-picture=done]' }) {
     const session = await serve(opened);
     const context = await browser.newContext({
       viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', permissions: ['clipboard-read', 'clipboard-write'],
@@ -45,8 +50,14 @@ export function tester(browser, serve) {
       session.close();
     }
   }
-  /** Says how many passed, and ends. */
+  /** Runs the tests, says how many passed, and ends. */
   test.done = async () => {
+    const waiting = noted.filter(({ alone }) => !alone);
+    const worker = async () => {
+      for (let next = waiting.shift(); next; next = waiting.shift()) await run(next);
+    };
+    await Promise.all(Array.from({ length: together }, worker));
+    for (const one of noted.filter(({ alone }) => alone)) await run(one);
     await browser.close();
     console.log(`${counts.passed} passed, ${counts.failed} failed`);
     process.exit(counts.failed ? 1 : 0);

@@ -117,13 +117,19 @@ class MockSession {
       case 'pick': {
         const map = maps[1];
         return answer({
-          point: [0, 5, 0], normal: [0, 0, 1], address: 'frond.left', object: 'fern', from: map.from, to: map.to, path: ['frond', 'left'],
+          point: [0, 5, 0], normal: [0, 0, 1], address: 'frond.left', object: 'fern', from: map.from, to: map.to,
+          ...(state.name.endsWith('.lsys') ? { path: ['A_9', 'A_8_2', 'I_1'], part: [0, 1, 2] } : { path: ['frond', 'left'], part: [1, 2] }),
         });
       }
       case 'zoom': {
         const zoom = Number(state.zoom ?? 1) * fields.factor;
         if (Math.abs(zoom - 1) < 1e-9) return answer({ at: null, zoom: null, camera: state.camera });
         return answer({ at: zoom > 2 ? 'frond.frond' : null, zoom: String(Number(zoom.toPrecision(12))), camera: state.camera });
+      }
+      case 'drag': {
+        const found = /\+\(([\d.]+)\)/.exec(state.text), at = found.index + 2;
+        const text = String(Math.round(Number(found[1]) + 5 * (fields.to[0] - fields.from[0])));
+        return answer({ edits: [{ from: at, to: at + found[1].length, text }], number: at, point: fields.to, says: `line 3: ${found[1]} became ${text}` });
       }
       case 'map':
       case 'pull': {
@@ -146,6 +152,7 @@ class MockSession {
         this.tiles(id, 0, fields, plot(model_of(fields), fields), 1);
         return answer({});
       case 'write': {
+        if (fields.film) return answer({ path: `film${fields.suffix}` });
         if (fields.path) return answer({ path: fields.path });
         const name = state.name.replace(/\.\w+$/, fields.suffix), contents = Buffer.from(`${fields.width}x${fields.height}`);
         this.send(binary([0x4c494647, id, Buffer.byteLength(name), 0, 0, 0, 0, 0], Buffer.concat([Buffer.from(name), contents])));

@@ -16,7 +16,7 @@ const require = createRequire(path.join(modules, 'x'));
 const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 const browser = await open_browser(modules), test = tester(browser, (opened) => serve(folder, modules, opened));
 
-await test('an error is underlined, and its mending changes the picture', async (hand, page) => {
+test('an error is underlined, and its mending changes the picture', async (hand, page) => {
   await hand.type_at('terminal', ' oops');
   await page.waitForSelector('.cm-lintRange-error');
   assert.match(await page.textContent('#finding'), /Line 9: .*does not know the word oops.*words that may stand here/);
@@ -32,7 +32,7 @@ await test('an error is underlined, and its mending changes the picture', async 
   assert.match(hand.last().text, /curl = 0\.859/);
 });
 
-await test('a slider: coarse, fine, typed, reset, written', async (hand, page) => {
+test('a slider: coarse, fine, typed, reset, written', async (hand, page) => {
   const slider = await hand.place_of('.knob input[aria-label="lean"]');
   await hand.changes(() => hand.drag(slider, 20, 0));
   const coarse = hand.last().set.lean;
@@ -60,7 +60,7 @@ await test('a slider: coarse, fine, typed, reset, written', async (hand, page) =
   assert.deepEqual(hand.last().set, {});
 });
 
-await test('numbers and colours in the text are dragged and picked', async (hand, page) => {
+test('numbers and colours in the text are dragged and picked', async (hand, page) => {
   const number = await hand.place_of_text('2.5');
   await hand.changes(() => hand.drag(number, 30, 0));
   const [, value] = /let lean = (\S+)/.exec(hand.last().text);
@@ -81,7 +81,7 @@ await test('numbers and colours in the text are dragged and picked', async (hand
   assert.match(hand.last().text, /tint rgb <1, 0, 0> 0\.5/);
 });
 
-await test('completion, hover, definition, rename, format', async (hand, page) => {
+test('completion, hover, definition, rename, format', async (hand, page) => {
   await hand.type_at('curl', '\ntr');
   await page.waitForSelector('.cm-tooltip-autocomplete');
   await page.waitForTimeout(150);
@@ -105,7 +105,7 @@ await test('completion, hover, definition, rename, format', async (hand, page) =
   await hand.until(async () => /map stem \{/.test(await hand.text()), 'the text is formatted');
 });
 
-await test('orbit, pan, dolly; by mouse and by keys; undo them all', async (hand, page) => {
+test('orbit, pan, dolly; by mouse and by keys; undo them all', async (hand, page) => {
   const before = await hand.pixels(), [x, y] = await hand.place_of('#view');
   await hand.changes(() => hand.drag([x, y], 80, 30));
   const orbited = hand.last().camera;
@@ -124,7 +124,7 @@ await test('orbit, pan, dolly; by mouse and by keys; undo them all', async (hand
   assert.ok(await page.isDisabled('#undo'));
 });
 
-await test('the wheel zooms without an end, and back', async (hand, page) => {
+test('the wheel zooms without an end, and back', async (hand, page) => {
   const before = await hand.pixels(), [x, y] = await hand.place_of('#view');
   await page.mouse.move(x, y);
   await hand.changes(async () => {
@@ -145,7 +145,7 @@ await test('the wheel zooms without an end, and back', async (hand, page) => {
   assert.equal(await hand.pixels(), before);
 });
 
-await test('a map is dragged by its corner; a map that would grow is red', async (hand, page) => {
+test('a map is dragged by its corner; a map that would grow is red', async (hand, page) => {
   await page.click('#tab-maps');
   await page.focus('[data-map=left]');
   const corner = await hand.place_of('.corner >> nth=1');
@@ -180,6 +180,14 @@ await test('a map is dragged by its corner; a map that would grow is red', async
   assert.match(hand.last().text, /follow left -> right/);
 });
 
+const twig = `lsys twig {
+  axiom A
+  A -> F(1)[+(40)F(1)]F(0.5) # a stem
+}
+# map a { scale 0.5  translate <0, 0.5> }
+# map b { scale 0.5 }
+`;
+
 const solid = `rifs solid {
   map a { scale 0.5  translate <-0.5, -0.5, -0.5> }
   map b { scale 0.5  translate <0.5, -0.5, -0.5> }
@@ -187,7 +195,7 @@ const solid = `rifs solid {
   map d { scale 0.5  translate <0.5, 0.5, 0.5> }
 }
 `;
-await test('a box in space is moved, turned and sheared', async (hand, page) => {
+test('a box in space is moved, turned and sheared', async (hand, page) => {
   const matrix = (name) => new RegExp(`map ${name} { matrix ([^}]*)}`).exec(hand.last().text)[1].split(',').map(Number);
   await page.click('#tab-maps');
   await page.focus('[data-map=d]');
@@ -208,7 +216,7 @@ await test('a box in space is moved, turned and sheared', async (hand, page) => 
   assert.ok(Math.hypot(...[1, 5, 9].map((i) => sheared[i] - turned[i])) > 0.01, `${turned} ${sheared}`);
 }, { opened: { name: 'solid.rifs', text: solid } });
 
-await test('a click on the picture selects its rule; the point is pulled', async (hand, page) => {
+test('a click on the picture selects its rule; the point is pulled', async (hand, page) => {
   const [x, y] = await hand.place_of('#view');
   await page.mouse.click(x + 5, y - 40);
   await page.waitForSelector('#picked dl');
@@ -220,7 +228,7 @@ await test('a click on the picture selects its rule; the point is pulled', async
   assert.match(hand.last().text, /map frond { matrix /);
 });
 
-await test('the grid of variations, and back', async (hand, page) => {
+test('the grid of variations, and back', async (hand, page) => {
   await page.click('#tab-vary');
   await page.waitForSelector('#grid button:nth-child(9)');
   await hand.until(() => hand.asked('thumbnail').length === 9, 'nine pictures are asked for');
@@ -237,9 +245,12 @@ await test('the grid of variations, and back', async (hand, page) => {
   assert.deepEqual(hand.last().set, {});
 });
 
-await test('time plays, and stops', async (hand, page) => {
+test('time plays, and stops', async (hand, page) => {
   await page.click('#tab-time');
   await page.fill('#time-seconds', '1');
+  await page.click('#play');
+  await hand.until(async () => /Nothing moves yet/.test(await page.textContent('#said')), 'it says why it does not play');
+  await page.check('#time-runs');
   await page.click('#play');
   await hand.until(() => hand.last().time > 3, 'time goes on');
   await hand.until(async () => (await page.textContent('#play')) === 'Play', 'it ends');
@@ -249,7 +260,57 @@ await test('time plays, and stops', async (hand, page) => {
   assert.equal(hand.last().time, null);
 });
 
-await test('a reload finds everything; a link holds the model', async (hand, page, session) => {
+test('key frames of knobs are kept, shown, played and removed; the film has them', async (hand, page) => {
+  const keys = () => page.locator('.keys li').allTextContents(), moment = page.locator('[aria-label="Moment"]');
+  await page.click('#tab-time');
+  await page.click('#add-key');
+  await moment.press('End');
+  await page.click('#tab-knobs');
+  await hand.knob('lean').press('PageUp');
+  await page.click('#tab-time');
+  await page.click('#add-key');
+  const lean = hand.last().set.lean;
+  assert.deepEqual(await keys(), ['0 slean 2.5×', `5 slean ${lean}×`]);
+  await moment.evaluate((input) => {
+    input.value = '2.5';
+    input.dispatchEvent(new Event('input'));
+  });
+  await hand.until(() => Math.abs(hand.last().set.lean - (2.5 + lean) / 2) < 1e-6, 'the knob is half way');
+  await page.click('.keys li:nth-child(1) .link');
+  await hand.until(() => hand.last().set.lean === 2.5, 'the first key frame shows');
+  await page.click('#save-film');
+  await hand.until(() => hand.asked('write').length === 1, 'the film is asked for');
+  const { film, width, height, suffix } = hand.asked('write')[0];
+  assert.deepEqual(film, { frames: 125, fps: 25, steps: null, set: { lean: [[0, 2.5], [1, lean]] } });
+  assert.deepEqual([width, height % 2, suffix], [640, 0, '.gif']);
+  await hand.until(async () => /-o fern\.gif$/.test(await page.textContent('[aria-label="Command line of the film"]')), 'the command shows');
+  await page.click('[aria-label="Remove the key frame at 5 seconds"]');
+  assert.equal((await keys()).length, 1);
+  await page.click('#undo');
+  assert.equal((await keys()).length, 2, 'key frames are undone as all else');
+  await page.reload();
+  await hand.settled();
+  await page.click('#tab-time');
+  assert.equal((await keys()).length, 2, 'and outlive a reload');
+});
+
+test('a part of an L-system is dragged: the number that follows is one step of the history', async (hand, page) => {
+  const [x, y] = await hand.place_of('#view');
+  await page.mouse.click(x + 5, y - 40);
+  await page.waitForSelector('#picked dl');
+  assert.match(await page.textContent('#picked'), /RulesA × 2 → I/);
+  await hand.drag(await hand.place_of('.point.pulls'), 40, 10, { steps: 8 });
+  await hand.until(() => /\+\(4[1-9]\)/.test(hand.last().text), 'the number follows');
+  const asks = hand.asked('drag');
+  assert.equal(asks[0].number, null);
+  assert.ok(asks.slice(1).every(({ number }) => number === twig.indexOf('40)')), 'a drag keeps its number');
+  assert.match(await page.textContent('#said'), /line 3: \d+ became 4\d/);
+  await page.keyboard.press('Control+z');
+  await hand.settled();
+  assert.equal(hand.last().text, twig);
+}, { opened: { name: 'twig.lsys', text: twig } });
+
+test('a reload finds everything; a link holds the model', async (hand, page, session) => {
   await hand.knob('lean').press('PageUp');
   await hand.type_at('# A fern', ' Really.');
   await page.fill('.presets input', 'leaning');
@@ -276,7 +337,7 @@ await test('a reload finds everything; a link holds the model', async (hand, pag
   await hand.until(async () => /no model/.test(await page.textContent('#said')), 'a bad link is told');
 });
 
-await test('fingers: one orbits, two zoom, a tap picks', async (hand, page) => {
+test('fingers: one orbits, two zoom, a tap picks', async (hand, page) => {
   const [x, y] = await hand.place_of('#view'), client = await page.context().newCDPSession(page);
   const touch = (type, ...points) => client.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
   await touch('touchStart', [x, y]);
@@ -294,7 +355,7 @@ await test('fingers: one orbits, two zoom, a tap picks', async (hand, page) => {
   await page.waitForSelector('#picked dl');
 }, { width: 390, height: 844, touch: true });
 
-await test('a file is opened, its text saved; the divider moves', async (hand, page) => {
+test('a file is opened, its text saved; the divider moves', async (hand, page) => {
   await page.click('#tab-out');
   await page.setInputFiles('input[type=file]', { name: 'twig.rifs', mimeType: 'text/plain', buffer: Buffer.from('rifs twig {\r\n  map a { scale 0.5 }\r\n}\r\n') });
   await hand.until(() => hand.last().name === 'twig.rifs', 'the file is the model');
@@ -308,7 +369,7 @@ await test('a file is opened, its text saved; the divider moves', async (hand, p
   await hand.until(() => hand.last().name === 'fern.rifs', 'the fern is back');
 });
 
-await test('files and the command line', async (hand, page) => {
+test('files and the command line', async (hand, page) => {
   await page.click('#tab-out');
   await hand.until(async () => /graftal render fern\.rifs --size/.test(await page.textContent('pre')), 'the command shows');
   await page.click('text=2×');
@@ -322,7 +383,7 @@ await test('files and the command line', async (hand, page) => {
   assert.equal(exported.suggestedFilename(), 'fern.glb');
 });
 
-await test('all by keyboard alone', async (hand, page) => {
+test('all by keyboard alone', async (hand, page) => {
   await page.keyboard.press('F6');
   await page.keyboard.press('Control+End');
   await page.keyboard.type('# typed');
@@ -355,7 +416,7 @@ await test('all by keyboard alone', async (hand, page) => {
 
 for (const [width, height] of [[1280, 720], [390, 844]]) {
   for (const dark of [false, true]) {
-    await test(`axe finds nothing at ${width}, ${dark ? 'dark' : 'light'}`, async (hand, page) => {
+    test(`axe finds nothing at ${width}, ${dark ? 'dark' : 'light'}`, async (hand, page) => {
       await page.evaluate(axe);
       for (const tab of [...(width < 800 ? ['text'] : []), 'knobs', 'maps', 'vary', 'time', 'out']) {
         await page.click(`#tab-${tab}`);
@@ -372,7 +433,7 @@ for (const [width, height] of [[1280, 720], [390, 844]]) {
 const rows = Array.from({ length: 300 }, (_, i) => `  let v${i} = 0.${i + 1}\n  map m${i} { scale 0.${(i % 8) + 1} } # row ${i}`).join('\n');
 for (const [name, opened] of [['a fern', undefined], ['many maps', { name: 'rows.rifs', text: `rifs rows {\n${rows}\n}\n` }]]) {
   // Half of it on a free machine: processors that share a core count more.
-  await test(`no task takes 100 ms of the processor: ${name}`, async (hand, page) => {
+  test(`no task takes 100 ms of the processor: ${name}`, async (hand, page) => {
     await browser.startTracing(page, { categories: ['toplevel', 'disabled-by-default-devtools.timeline', 'devtools.timeline'] });
     await hand.drag(await hand.place_of('.knob input'), 40, 0, { steps: 10 });
     await hand.type_at('rifs', ' some more words');
@@ -384,7 +445,7 @@ for (const [name, opened] of [['a fern', undefined], ['many maps', { name: 'rows
     const tasks = traceEvents.filter((event) => event.name === 'RunTask' && main.has(`${event.pid} ${event.tid}`));
     const longest_ms = Math.max(...tasks.map(({ tdur }) => (tdur ?? 0) / 1000));
     assert.ok(tasks.length > 100 && longest_ms < 100, `${tasks.length} tasks, the longest took ${longest_ms} ms`);
-  }, { opened });
+  }, { opened, alone: true });
 }
 
 await test.done();

@@ -49,7 +49,7 @@ const browser = await open_browser(modules), test = tester(browser, serve);
 // The first picture is enough to begin with: the tests draw drafts.
 const small = { width: 820, height: 640, ready: '#status:not(:empty)' };
 
-await test('the text, a knob, the camera; all undone', async (hand, page) => {
+test('the text, a knob, the camera; all undone', async (hand, page) => {
   const now = () => page.evaluate(() => window.studio.history.now);
   await page.selectOption('#quality', 'draft');
   await hand.settled();
@@ -74,7 +74,7 @@ await test('the text, a knob, the camera; all undone', async (hand, page) => {
   assert.equal(await hand.pixels(), before);
 }, small);
 
-await test('a click selects the rule; the wheel to 1e30, and back to the same picture', async (hand, page) => {
+test('a click selects the rule; the wheel to 1e30, and back to the same picture', async (hand, page) => {
   const now = () => page.evaluate(() => window.studio.history.now), scale = () => page.evaluate(() => Number(window.studio.history.now.zoom));
   await page.selectOption('#quality', 'draft');
   await hand.settled();
@@ -99,7 +99,7 @@ await test('a click selects the rule; the wheel to 1e30, and back to the same pi
   assert.equal(await hand.pixels(), before);
 }, { ...small, opened: square });
 
-await test('the saved picture is that of the command line; a reload finds all', async (hand, page) => {
+test('the saved picture is that of the command line; a reload finds all', async (hand, page) => {
   await page.selectOption('#quality', 'draft');
   await page.locator('.knob input[aria-label="lean"]').press('PageUp');
   await hand.settled();

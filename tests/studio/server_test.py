@@ -300,6 +300,46 @@ class Sessions(Served):
         self.assertEqual(pathlib.Path(self.folder.name, "page.png").read_bytes(), line)
         self.assertEqual(download[0].contents, line)
 
+    def test_a_film_is_that_of_the_command_line(self):
+        pathlib.Path(self.folder.name, "crystal.rifs").write_text(CRYSTAL)
+        film = {"frames": 5, "fps": 10, "steps": [1, 3], "set": {"spread": [[0, 0.5], [0.25, 0.3], [1, 0.4]]}}
+        with self.studio.page() as page:
+            page.receive()
+            page.show(**SMALL)
+            page.until(is_done)
+            command = page.answer(page.ask("command", film=film))["command"]
+            self.assertIn("--set spread=0.5..0.3@0.25..0.4 --steps 1..3", command)
+            asked = page.ask("write", path="film.png", film=film)
+            messages = page.until(lambda message: has_type("answer")(message) and message["id"] == asked)
+            self.assertEqual(messages[-1].get("path"), "film.png", messages[-1])
+            shares = [message["share"] for message in messages if has_type("progress")(message)]
+            self.assertEqual(shares, sorted(shares))
+            self.assertEqual(page.answer(page.ask("write", path="frames/", film=film)).get("path"), "frames/")
+            for bad in [{}, {"frames": 2, "set": {"spread": [[0, 1]]}}, {"frames": 2, "steps": 3},
+                        {"frames": 2, "set": {"spread": [[0.1, 1], [1, 2]]}}, {"frames": 2, "fps": 0}]:
+                self.assertIn("error", page.answer(page.ask("write", suffix=".gif", film=bad)), bad)
+        line = [PROGRAM, *shlex.split(command)[1:], "-q"]
+        subprocess.run([*line, "-o", "line.png"], cwd=self.folder.name, check=True)
+        subprocess.run([*line, "-o", "line/"], cwd=self.folder.name, check=True)
+        here = pathlib.Path(self.folder.name)
+        self.assertEqual((here / "film.png").read_bytes(), (here / "line.png").read_bytes())
+        frames = sorted(path.name for path in (here / "line").glob("*.png"))
+        self.assertEqual(len(frames), 5)
+        for name in frames:
+            self.assertEqual((here / "frames" / name).read_bytes(), (here / "line" / name).read_bytes(), name)
+
+    def test_a_film_is_stopped(self):
+        with self.studio.page() as page:
+            page.receive()
+            page.show(**SMALL)
+            page.until(is_done)
+            asked = page.ask("write", path="film.gif", film={"frames": 2000, "fps": 25})
+            page.until(has_type("progress"))
+            page.ask("stop")
+            self.assertEqual(page.answer(asked).get("error"), "interrupted")
+            self.assertEqual(page.answer(page.ask("write", path="x.png")).get("path"), "x.png")
+        self.assertNotIn("film.gif", self.files())
+
     def test_files_go_below_the_folder_only(self):
         os.symlink("/tmp", pathlib.Path(self.folder.name, "out"))
         with self.studio.page() as page:

@@ -1,5 +1,6 @@
 #include "tools/graftal/studio_home.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "compiler/support/text_encoding.h"
 #include "runtime/export/export_model.h"
 #include "runtime/image_files/image_files.h"
+#include "runtime/render/animate.h"
 #include "runtime/render/file_film.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/studio/example.h"
@@ -18,6 +20,7 @@
 #include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 #include "tools/graftal/commands.h"
+#include "tools/graftal/options/animate.h"
 #include "tools/graftal/options/export.h"
 #include "tools/graftal/report.h"
 
@@ -116,6 +119,20 @@ void run_words(const FileJob& job, const std::string& output, const std::string&
     session.set_control({cancel, {}});
     if (options.command->run == run_export) {
         export_model(session, export_options(options), compilation);
+        return;
+    }
+    if (options.command->run == run_animate) {
+        AnimateOptions animate = animate_options(options);
+        animate.on_progress = [&](const AnimationProgress& progress) {
+            const double drawn = static_cast<double>(progress.frame) + progress.fraction.value_or(0);
+            on_share(progress.stage == AnimationProgress::Stage::measuring
+                         ? 0
+                         : drawn / static_cast<double>(std::max<std::size_t>(progress.frames, 1)));
+        };
+        AnimationOutcome outcome = animate_model(session, animate);
+        compilation = std::move(outcome.compilation);
+        if (!outcome.done && compilation.status.ok() && !compilation.diagnostics.has_errors())
+            compilation.status = Status::failure("interrupted");
         return;
     }
     options.render.on_progress = [&](const DrawProgress& progress) {

@@ -36,8 +36,9 @@ constexpr double flattest_map = 1e-9;
 /// Builds the nodes of a graph, which it uses up: with millions of instances each must lie in memory once.
 class Builder {
   public:
-    Builder(Graph graph, const Components& components, const std::vector<ObjectBounds>& bounds)
-        : graph_(std::move(graph)), components_(components), bounds_(bounds) {}
+    Builder(Graph graph, const Components& components, const std::vector<ObjectBounds>& bounds,
+            WorkMeter* meter)
+        : graph_(std::move(graph)), components_(components), bounds_(bounds), meter_(meter) {}
 
     CutGraph build() {
         const auto count = graph_.objects.size();
@@ -65,8 +66,10 @@ class Builder {
                           [&](const Primitive& primitive) { return primitive_node(primitive); });
             const std::vector<Instance> instances = std::exchange(object.instances, {});
             node.edges.reserve(instances.size());
-            for (const Instance& instance : instances)
+            for (const Instance& instance : instances) {
+                if (meter_) meter_->add();
                 if (!is_plane_on_a_line(instance)) node.edges.push_back(edge(instance, node, id));
+            }
             if (object.terminal) {
                 if (!is_plane_on_a_line(*object.terminal))
                     node.stop_edges.push_back(edge(*object.terminal, node, id));
@@ -175,6 +178,7 @@ class Builder {
     Graph graph_;
     const Components& components_;
     const std::vector<ObjectBounds>& bounds_;
+    WorkMeter* meter_;
     CutGraph cut_;
 };
 
@@ -266,9 +270,9 @@ class JoinedParts {
 
 } // namespace
 
-CutGraph build_cut_graph(Graph graph, const std::vector<ObjectBounds>& bounds) {
+CutGraph build_cut_graph(Graph graph, const std::vector<ObjectBounds>& bounds, WorkMeter* meter) {
     const Components components = strong_components(graph);
-    CutGraph cut = Builder(std::move(graph), components, bounds).build();
+    CutGraph cut = Builder(std::move(graph), components, bounds, meter).build();
     {
         const JoinedParts joined(cut);
         mark_textured(cut);

@@ -8,7 +8,8 @@
 
 namespace graftal {
 
-/// Requires a graph after the passes for detail (passes/pipeline.h), and its bounds. O(graph).
-CutGraph build_cut_graph(Graph graph, const std::vector<ObjectBounds>& bounds);
+/// Requires a graph after the passes for detail (passes/pipeline.h), and its bounds. O(graph). The meter may
+/// be null.
+CutGraph build_cut_graph(Graph graph, const std::vector<ObjectBounds>& bounds, WorkMeter* meter = nullptr);
 
 } // namespace graftal

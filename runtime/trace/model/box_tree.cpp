@@ -15,6 +15,8 @@ constexpr std::size_t width = 8;
 constexpr int bins = 16;
 /// Deeper than this, halves by number take the place of the heuristic.
 constexpr int deepest_by_area = 32;
+/// The flag is asked before so many items are split: some milliseconds.
+constexpr std::size_t items_a_look = 4096;
 
 struct FloatBox {
     std::array<float, 3> lower{infinite, infinite, infinite};
@@ -131,8 +133,9 @@ std::size_t split(Items items, int depth, std::size_t grain) {
 class TreeBuilder {
   public:
     /// `packed`: takes the items, unless it is null.
-    explicit TreeBuilder(std::vector<BoxNode>& nodes, std::vector<PackedNode>* packed = nullptr)
-        : nodes_(nodes), packed_(packed) {}
+    TreeBuilder(const CancelFlag& cancel, std::vector<BoxNode>& nodes,
+                std::vector<PackedNode>* packed = nullptr)
+        : cancel_(cancel), nodes_(nodes), packed_(packed) {}
 
     std::uint32_t build(Items items, int depth) {
         struct Part {
@@ -153,6 +156,7 @@ class TreeBuilder {
                     largest = part;
             if (largest == parts.end()) break;
             const Items whole = largest->items;
+            if (whole.size() > items_a_look && cancel_.raised()) throw Cancelled();
             const std::size_t first = split(whole, depth + levels++ / 3, grain);
             *largest = {whole.first(first), box_of(whole.first(first)).half_area()};
             parts.push_back({whole.subspan(first), box_of(whole.subspan(first)).half_area()});
@@ -235,6 +239,7 @@ class TreeBuilder {
 
     static constexpr float last_byte = 255;
 
+    const CancelFlag& cancel_;
     std::vector<BoxNode>& nodes_;
     std::vector<PackedNode>* packed_;
 };
@@ -250,14 +255,15 @@ BoxedItem::BoxedItem(const Box& box, double extent, std::uint32_t number) : item
     }
 }
 
-std::uint32_t build_box_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes) {
-    return items.empty() ? no_tree : TreeBuilder(nodes).build(items, 0);
+std::uint32_t build_box_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes,
+                             const CancelFlag& cancel) {
+    return items.empty() ? no_tree : TreeBuilder(cancel, nodes).build(items, 0);
 }
 
 std::uint32_t build_packed_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes,
-                                std::vector<PackedNode>& packed) {
+                                std::vector<PackedNode>& packed, const CancelFlag& cancel) {
     if (items.empty()) return no_tree;
-    TreeBuilder builder(nodes, &packed);
+    TreeBuilder builder(cancel, nodes, &packed);
     return items.size() <= width ? builder.pack(items) : builder.build(items, 0);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compiler/support/bounds.h"
+#include "compiler/support/control.h"
 #include "runtime/trace/model/lanes.h"
 
 namespace graftal {
@@ -44,11 +45,13 @@ inline constexpr std::uint32_t no_tree = std::numeric_limits<std::uint32_t>::max
 
 /// Builds a tree over the items by the surface area heuristic, at the end of `nodes`; returns the number of
 /// its root, or no_tree if there are no items. O(n log n), and no deeper than 64 levels. Reorders the items.
-std::uint32_t build_box_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes);
+/// The flag ends it by Cancelled.
+std::uint32_t build_box_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes,
+                             const CancelFlag& cancel = {});
 
 /// Builds a tree with packed nodes at the end of `packed`, as few as can be, and other nodes above them.
 /// Requires numbers of items that are less than 256 apart.
 std::uint32_t build_packed_tree(std::vector<BoxedItem>& items, std::vector<BoxNode>& nodes,
-                                std::vector<PackedNode>& packed);
+                                std::vector<PackedNode>& packed, const CancelFlag& cancel = {});
 
 } // namespace graftal

@@ -30,12 +30,15 @@ TraceNode::Kind kind_of(const CutNode& node) {
 
 /// Most edges of a graph whose small groups are spelt out at each use, which takes memory.
 constexpr std::size_t most_edges_spelt_out = 200'000;
+/// Edges after which the flag is asked: some milliseconds.
+constexpr std::uint64_t edges_a_look = 1000;
 
 /// Fills in nodes, edges and boxes of a model.
 class ModelBuilder {
   public:
-    explicit ModelBuilder(TraceModel& model)
-        : model_(model), cut_(model.layers.cut), bounds_(model.ground->bounds) {
+    ModelBuilder(TraceModel& model, const Control& control)
+        : model_(model), cancel_(control.cancel), meter_(control, "trace_model", edges_a_look),
+          cut_(model.layers.cut), bounds_(model.ground->bounds) {
         std::size_t edges = 0;
         for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
             model_.graph_from_frame.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));
@@ -75,9 +78,11 @@ class ModelBuilder {
         if (node != TraceLook::none) look.node = model_.layers.source[node];
         model_.edges.push_back(edge);
         model_.looks.push_back(look);
+        meter_.add();
     }
 
     void add_node(NodeId id) {
+        meter_.add();
         const CutNode& source = cut_.nodes[id];
         const Affine frame_from_graph = inverse(model_.graph_from_frame[id]);
         TraceNode node;
@@ -125,10 +130,12 @@ class ModelBuilder {
         node.run = run_of(*cell.source);
         node.first_edge = static_cast<std::uint32_t>(model_.edges.size());
         std::vector<BoxedItem> items;
-        for (std::size_t i = cell.first; i < cell.first + cell.count; ++i)
+        for (std::size_t i = cell.first; i < cell.first + cell.count; ++i) {
             items.emplace_back(transformed(frame_from_graph, box_of((*cell.source->run)[i])), 1,
                                static_cast<std::uint32_t>(i));
-        node.tree = build_packed_tree(items, model_.boxes, model_.packed_boxes);
+            meter_.add();
+        }
+        node.tree = build_packed_tree(items, model_.boxes, model_.packed_boxes, cancel_);
     }
 
     std::uint32_t run_of(const CellSource& source) {
@@ -193,7 +200,7 @@ class ModelBuilder {
             add(edge, look, part.holder.value_or(id));
         }
         std::vector<BoxedItem> items = grouped_items(model_, numbers);
-        return build_box_tree(items, model_.boxes);
+        return build_box_tree(items, model_.boxes, cancel_);
     }
 
     /// An instance and the box of what it draws, in the frame that the graph gives the node.
@@ -206,10 +213,11 @@ class ModelBuilder {
 
     /// The instances, with the primitives of small groups in place of the groups: a test of one more box is
     /// faster than to enter one more frame. The unbounded ones come first.
-    std::vector<Part> parts_of(const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) const {
+    std::vector<Part> parts_of(const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) {
         constexpr std::size_t most_parts = 4096;
         std::vector<Part> parts;
         for (std::size_t i = 0; i < edges.size(); ++i) {
+            meter_.add();
             if (is_small_group(edges[i].child) && parts.size() + edges.size() < most_parts)
                 add_group(edges[i], parts);
             else
@@ -269,6 +277,8 @@ class ModelBuilder {
     }
 
     TraceModel& model_;
+    const CancelFlag& cancel_;
+    WorkMeter meter_;
     bool spells_out_groups_ = true;
     const CutGraph& cut_;
     const DrawnBounds& bounds_;
@@ -330,14 +340,16 @@ std::uint64_t share_of(double work_seconds, double units_a_second, std::uint64_t
 }
 
 /// Sizes by node of the cut; none if rays come through everywhere.
-std::vector<ShellSizes> found_shell_sizes(TraceModel& model) {
+std::vector<ShellSizes> found_shell_sizes(TraceModel& model, const Control& control) {
     const CutGraph& cut = model.prepared.cut;
     // Sizes are asked for by octaves. An eighth of one tells them apart, and nodes of all sizes share kinds.
     constexpr int grain = PieceKind::steps_an_octave / 8;
-    Weights weights(cut, {.error_px = model.projection.error_px(),
-                          .grain = grain,
-                          .most_visits = share_of(model.options.work_seconds, WorkRates::kinds,
-                                                  WeightOptions::usual_visits)});
+    Weights weights(
+        cut,
+        {.error_px = model.projection.error_px(),
+         .grain = grain,
+         .most_visits = share_of(model.options.work_seconds, WorkRates::kinds, WeightOptions::usual_visits)},
+        control);
     Piece root;
     root.node = cut.root;
     root.steps = model.prepared.root_steps;
@@ -352,11 +364,12 @@ std::vector<ShellSizes> found_shell_sizes(TraceModel& model) {
 }
 
 /// Where copies lie in each other so often that rays would not come through.
-void find_shells(TraceModel& model) {
+void find_shells(TraceModel& model, const Control& control) {
     if (!model.projection.culls()) return;
     std::optional<std::vector<ShellSizes>>& known = model.ground->shell_sizes;
     const auto by_error = [](const CutNode& node) { return node.terminal_px > 0; };
-    if (!known || std::ranges::any_of(model.prepared.cut.nodes, by_error)) known = found_shell_sizes(model);
+    if (!known || std::ranges::any_of(model.prepared.cut.nodes, by_error))
+        known = found_shell_sizes(model, control);
     const std::vector<ShellSizes>& sizes = *known;
     if (sizes.empty()) return;
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
@@ -386,16 +399,17 @@ std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
     return no_edge;
 }
 
-TraceGround::TraceGround(const PreparedCut& prepared, double work_seconds)
+TraceGround::TraceGround(const PreparedCut& prepared, double work_seconds, const CancelFlag& cancel)
     : layers(layered(prepared.cut, prepared.root_steps)),
-      bounds(drawn_bounds(layers.cut, share_of(work_seconds, 1 / StagePrice::piece, most_pieces))) {}
+      bounds(drawn_bounds(layers.cut, share_of(work_seconds, 1 / StagePrice::piece, most_pieces),
+                          {cancel, {}})) {}
 
 TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& seen,
                        const DetailOptions& cut_options, ModelTextures read_textures,
-                       std::shared_ptr<TraceGround> known_ground)
+                       std::shared_ptr<TraceGround> known_ground, const CancelFlag& cancel)
     : shared(std::move(ready)), prepared(*shared),
       ground(known_ground ? std::move(known_ground)
-                          : std::make_shared<TraceGround>(prepared, cut_options.work_seconds)),
+                          : std::make_shared<TraceGround>(prepared, cut_options.work_seconds, cancel)),
       layers(ground->layers), view(seen), options(cut_options),
       projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
       meshes(prepared, most_shell_work(options)), textures(std::move(read_textures)) {
@@ -408,23 +422,25 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
     textures.of_material.resize(prepared.cut.materials.size());
     for (const std::shared_ptr<const Texture>& texture : textures.of_material)
         clear_texels = clear_texels || (texture && texture->coverage < 1);
-    ModelBuilder(*this).build();
+    const Control control{cancel, {}};
+    ModelBuilder(*this, control).build();
     terminal_reach = farthest_terminal(*this);
-    find_shells(*this);
+    find_shells(*this, control);
     add_specks(*this);
-    add_unrollings(*this);
+    add_unrollings(*this, cancel);
     even = is_even(*this);
+    if (cancel.raised()) throw Cancelled();
     if (!even) return;
     even_parts = graftal::even_parts(*this);
     even_offsets = graftal::even_offsets(*this);
     even_triangles = graftal::even_triangles(*this, even_parts);
 }
 
-const SelfShadows& TraceModel::self_shadows() const {
-    return ground->self_shadows.get([this] {
+const SelfShadows& TraceModel::self_shadows(const CancelFlag& cancel) const {
+    return ground->self_shadows.get([&] {
         return measure_self_shadows(prepared.cut, prepared.symmetry, prepared.root_steps, view,
                                     options.limit_normals, options.light_steps,
-                                    self_shadow_work(options.work_seconds));
+                                    self_shadow_work(options.work_seconds), cancel);
     });
 }
 

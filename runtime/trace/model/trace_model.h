@@ -14,6 +14,7 @@
 #include "compiler/detail/self_shadow.h"
 #include "compiler/detail/shell/sizes.h"
 #include "compiler/scene/scene.h"
+#include "compiler/support/control.h"
 #include "compiler/support/ray.h"
 #include "compiler/unfolded/drawn_bounds.h"
 #include "compiler/unfolded/layers.h"
@@ -166,8 +167,8 @@ struct ModelTextures {
 
 /// Parts that models of one graph and view have in common, whatever their error.
 struct TraceGround {
-    /// `work_seconds`: allowed for the picture.
-    TraceGround(const PreparedCut& prepared, double work_seconds);
+    /// `work_seconds`: allowed for the picture. The flag ends it by Cancelled.
+    TraceGround(const PreparedCut& prepared, double work_seconds, const CancelFlag& cancel = {});
 
     LayeredGraph layers; ///< of prepared.cut
     DrawnBounds bounds;  ///< of the layers
@@ -227,16 +228,18 @@ struct TraceModel {
     /// Thickness of the box of a content model, at most.
     double most_thickness() const { return 0.1 * most_half_width; }
 
-    /// Shadows of the view's lights; measured when they are first asked for.
-    const SelfShadows& self_shadows() const;
+    /// Shadows of the view's lights; measured when they are first asked for: the flag ends that
+    /// by Cancelled.
+    const SelfShadows& self_shadows(const CancelFlag& cancel = {}) const;
 
     /// The node as the cut has it.
     const CutNode& source(std::uint32_t node) const { return prepared.cut.nodes[layers.source[node]]; }
 
     /// Materials without a texture of theirs show their colour. `ground`: of the same graph and view, or
-    /// null.
+    /// null. The flag ends it by Cancelled.
     TraceModel(std::shared_ptr<const PreparedCut> prepared, const View& view, const DetailOptions& options,
-               ModelTextures textures = {}, std::shared_ptr<TraceGround> ground = nullptr);
+               ModelTextures textures = {}, std::shared_ptr<TraceGround> ground = nullptr,
+               const CancelFlag& cancel = {});
     TraceModel(const TraceModel&) = delete;
     TraceModel& operator=(const TraceModel&) = delete;
 };

@@ -26,11 +26,14 @@ constexpr std::size_t most_in_all = 8192;
 
 class Unroller {
   public:
-    explicit Unroller(TraceModel& model) : model_(model), most_edges_(model.edges.size() + most_in_all) {}
+    Unroller(TraceModel& model, const CancelFlag& cancel)
+        : model_(model), cancel_(cancel), most_edges_(model.edges.size() + most_in_all) {}
 
     void run() {
-        for (const std::uint32_t number : nodes_by_distance())
+        for (const std::uint32_t number : nodes_by_distance()) {
+            if (cancel_.raised()) throw Cancelled();
             unroll(number);
+        }
     }
 
   private:
@@ -316,18 +319,19 @@ class Unroller {
 
     std::uint32_t tree_over(const std::vector<std::uint32_t>& edges) {
         std::vector<BoxedItem> items = grouped_items(model_, edges);
-        return build_box_tree(items, model_.boxes);
+        return build_box_tree(items, model_.boxes, cancel_);
     }
 
     TraceModel& model_;
+    const CancelFlag& cancel_;
     const std::size_t most_edges_; ///< without leaves
     std::size_t leaves_in_all_ = 0;
 };
 
 } // namespace
 
-void add_unrollings(TraceModel& model) {
-    Unroller(model).run();
+void add_unrollings(TraceModel& model, const CancelFlag& cancel) {
+    Unroller(model, cancel).run();
 }
 
 } // namespace graftal

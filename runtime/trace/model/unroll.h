@@ -5,7 +5,7 @@
 namespace graftal {
 
 /// Adds the unrollings of a model that has all else: of the nodes next to the root first, as long as they are
-/// worth their memory, some MiB at most.
-void add_unrollings(TraceModel& model);
+/// worth their memory, some MiB at most. The flag ends it by Cancelled.
+void add_unrollings(TraceModel& model, const CancelFlag& cancel);
 
 } // namespace graftal

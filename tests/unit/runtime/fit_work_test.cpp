@@ -41,15 +41,15 @@ class FitWork : public testing::Test {
             return ShaderLimits();
         };
         const WorkerThreads workers(threads_);
-        return fit_work({.prepared = prepared,
-                         .view = view_,
-                         .options = options,
-                         .textures = {},
-                         .wanted = wanted_,
-                         .limits_of = limits,
-                         .workers = &workers,
-                         .cancelled = [] { return false; },
-                         .on_first_look = on_first_look_});
+        return *fit_work({.prepared = prepared,
+                          .view = view_,
+                          .options = options,
+                          .textures = {},
+                          .wanted = wanted_,
+                          .limits_of = limits,
+                          .workers = &workers,
+                          .cancelled = [] { return false; },
+                          .on_first_look = on_first_look_});
     }
 
     /// Cubes of all sizes that lie in each other.

@@ -51,6 +51,50 @@ Sweep camera_sweep(const std::string& name, const CameraOverride& from, const Ca
     return {"--camera " + name, apply};
 }
 
+/// Those without a time lie evenly between their neighbours.
+void spread_evenly(std::vector<SweepKey>& keys, const std::vector<bool>& timed) {
+    for (std::size_t begin = 0, end = 1; end < keys.size(); ++end) {
+        if (!timed[end]) continue;
+        for (std::size_t i = begin + 1; i < end; ++i)
+            keys[i].t = swept(keys[begin].t, keys[end].t,
+                              static_cast<double>(i - begin) / static_cast<double>(end - begin));
+        begin = end;
+    }
+}
+
+/// "NAME=A" and "B@0.3..C".
+std::optional<Sweep> parse_key_sweep(const std::pair<std::string, std::string>& range) {
+    const auto first = parse_setting(range.first);
+    if (!first) return std::nullopt;
+    std::vector<SweepKey> keys{{0, first->second}};
+    std::vector<bool> timed{true};
+    for (std::string_view rest = range.second;;) {
+        const std::size_t end = std::min(rest.find(between), rest.size());
+        const std::string_view key = rest.substr(0, end);
+        const std::size_t at = std::min(key.find('@'), key.size());
+        const auto value = parse_setting(first->first + "=" + std::string(key.substr(0, at)));
+        if (!value) return std::nullopt;
+        keys.push_back({1, value->second});
+        timed.push_back(at < key.size());
+        if (timed.back()) {
+            const auto t = parse_at_least(key.substr(at + 1), 0);
+            if (!t || *t > 1) return std::nullopt;
+            keys.back().t = *t;
+        }
+        if (end == rest.size()) break;
+        rest.remove_prefix(end + between.size());
+    }
+    timed.back() = true;
+    spread_evenly(keys, timed);
+    for (std::size_t i = 1; i < keys.size(); ++i)
+        if (!(keys[i].t > keys[i - 1].t)) return std::nullopt;
+    const auto apply = [keys, name = first->first](double t, StageOptions& options) {
+        const double value = options.lower.set[name] = swept_by_keys(keys, t);
+        return fmt::format("--set {}={:.6g}", name, value);
+    };
+    return Sweep{"--set " + first->first, apply};
+}
+
 } // namespace
 
 std::optional<std::pair<std::string, std::string>> parse_range(std::string_view text) {
@@ -86,6 +130,8 @@ std::optional<Sweep> parse_seed_sweep(std::string_view text) {
 std::optional<Sweep> parse_setting_sweep(std::string_view text) {
     const auto range = parse_range(text);
     if (!range) return std::nullopt;
+    if (range->second.find(between) != std::string::npos || range->second.find('@') != std::string::npos)
+        return parse_key_sweep(*range);
     const std::size_t colon = std::min(range->second.find(':'), range->second.size());
     const auto from = parse_setting(range->first);
     if (!from) return std::nullopt;

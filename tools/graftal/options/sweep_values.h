@@ -21,6 +21,8 @@ std::optional<Sweep> parse_steps_sweep(std::string_view text, std::uint64_t most
 std::optional<Sweep> parse_seed_sweep(std::string_view text);
 
 /// "NAME=A..B": the value of a `let`; "NAME=A..B:STEP" runs in steps, each for an equal time.
+/// "NAME=A..B@0.3..C" runs from one to the next, and has come to B after that share of the time; without it
+/// they lie evenly.
 std::optional<Sweep> parse_setting_sweep(std::string_view text);
 
 /// "1..1e30": a zoom by equal factors in equal times.

@@ -114,7 +114,7 @@ export class History {
   private load(): Kept | null {
     try {
       const kept = JSON.parse(sessionStorage.getItem(this.storage_key) ?? 'null');
-      const entries = kept.entries.map((entry: Choices & { text: number }) => ({ ...entry, text: kept.texts[entry.text] }));
+      const entries = kept.entries.map((entry: Choices & { text: number }) => ({ ...entry, keys: entry.keys ?? [], text: kept.texts[entry.text] }));
       return entries.length > 0 && entries[kept.at] ? { entries, at: kept.at } : null;
     } catch {
       return null;

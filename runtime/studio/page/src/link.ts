@@ -50,7 +50,14 @@ function checked(held: Record<string, unknown>): Partial<Choices> | null {
   for (const key of ['steps', 'time', 'seed'] as const) if (is_number(held[key])) made[key] = held[key];
   for (const key of ['at', 'zoom', 'quality'] as const) if (typeof held[key] === 'string') made[key] = held[key];
   const { set, camera } = held as { set?: object; camera?: Record<string, unknown> };
-  if (set && typeof set === 'object') made.set = Object.fromEntries(Object.entries(set).filter(([, value]) => is_number(value)));
+  if (set && typeof set === 'object') made.set = numbers_of(set)!;
   if (camera && ['location', 'look_at', 'up'].every((key) => is_vector(camera[key]))) made.camera = camera as unknown as Choices['camera'];
+  const keys = held['keys'];
+  if (Array.isArray(keys)) made.keys = keys.filter((key) => is_number(key?.seconds) && numbers_of(key.set)).map(({ seconds, set }) => ({ seconds, set: numbers_of(set)! }));
   return made;
+}
+
+function numbers_of(held: unknown): Record<string, number> | null {
+  if (!held || typeof held !== 'object') return null;
+  return Object.fromEntries(Object.entries(held).filter(([, value]) => is_number(value))) as Record<string, number>;
 }

@@ -26,7 +26,7 @@ import type { Camera, Choices, Edit, Findings, Hello, Model, Pass, Progress, Sen
 const most_px = 2_100_000;
 
 const nothing: Choices = {
-  name: '', text: '', set: {}, steps: null, time: null, seed: null, camera: null, at: null, zoom: null, engine: null, quality: null,
+  name: '', text: '', set: {}, steps: null, time: null, seed: null, camera: null, at: null, zoom: null, engine: null, quality: null, keys: [],
 };
 
 class Page implements Studio, Listener {
@@ -188,7 +188,7 @@ class Page implements Studio, Listener {
     this.maps.show(id === 'maps');
     this.digraph.show(id === 'maps');
     this.vary.show(id === 'vary');
-    if (id !== 'time') this.time.stop();
+    this.time.tab(id === 'time');
     if (id === 'out') void this.out.show();
     if (id === 'knobs') this.presets.show();
     document.body.dataset['tab'] = id;
@@ -242,6 +242,7 @@ class Page implements Studio, Listener {
     by_id('engine').replaceChildren(...message.engines.map((name) => element('option', { value: name }, name)));
     by_id('engine-choice').hidden = message.engines.length < 2;
     this.out.hello();
+    this.time.film.hello();
     if (!first) return this.show();
     this.history.open({ ...nothing, name: message.name, text: message.text });
     await this.open_link();
@@ -258,14 +259,17 @@ class Page implements Studio, Listener {
     this.model = message;
     if (message.number !== this.session.number) return;
     this.knobs.show();
+    this.time.model_came();
     this.maps.model_came();
     this.digraph.show();
     this.point.draw();
   }
 
   progress(message: Progress): void {
-    if (message.number >= first_id) this.say(`Working on the file: ${Math.round(100 * (message.share ?? 0))} %`);
-    else if (message.number === this.session.number) this.status.progress(message);
+    if (message.number >= first_id) {
+      this.say(`Working on the file: ${Math.round(100 * (message.share ?? 0))} %`);
+      this.time.film.progress(message.number, message.share ?? 0);
+    } else if (message.number === this.session.number) this.status.progress(message);
   }
 
   pass(message: Pass): void {

@@ -9,22 +9,22 @@ interface Picked {
   address: string;
   object: string;
   path: string[];
-}
-
-interface Pull {
-  address: string;
-  to: Vec3;
+  /** Numbers of the instances on the way, by which an L-system's part is found again. */
+  part: number[];
 }
 
 export class PointTool {
   private picked: Picked | null = null;
   /** Where the point of the model lies, as far as the text follows the hand. */
   private lies: Vec3 = [0, 0, 0];
-  private readonly ask: (pull: Pull) => void;
+  /** Where the number begins that a drag of an L-system's part changes; null: the next drag chooses one. */
+  private number: number | null = null;
+  private held = false;
+  private readonly ask: (to: Vec3) => void;
 
   /** `card` says what was picked. */
   constructor(private readonly overlay: SVGSVGElement, private readonly card: HTMLElement, private readonly studio: Studio) {
-    this.ask = latest((pull) => this.pull_now(pull));
+    this.ask = latest((to) => this.pull_now(to));
     this.draw();
   }
 
@@ -36,8 +36,8 @@ export class PointTool {
       if (!answer['point']) {
         this.picked = null;
       } else {
-        const { point, address, object, from, to, path } = answer as unknown as Picked & { from?: number; to?: number };
-        this.picked = { point, address, object, path: (path ?? []).map((one) => (typeof one === 'string' ? one : JSON.stringify(one))) };
+        const { point, address, object, from, to, path, part } = answer as unknown as Picked & { from?: number; to?: number };
+        this.picked = { point, address, object, path: path ?? [], part: part ?? [] };
         if (typeof from === 'number' && typeof to === 'number') studio.select(from, to);
       }
     } catch (error) {
@@ -64,7 +64,8 @@ export class PointTool {
     this.card.replaceChildren(element('button', { type: 'button', 'aria-label': 'Close', onclick: () => this.forget() }, '×'), element('dl', {},
       element('dt', {}, 'Object'), element('dd', {}, picked.object),
       element('dt', {}, 'Address'), element('dd', {}, element('code', {}, picked.address || '(the whole)')),
-      picked.path.length > 0 && element('dt', {}, 'Path'), picked.path.length > 0 && element('dd', {}, picked.path.join(' → '))));
+      picked.path.length > 0 && element('dt', {}, this.is_lsys ? 'Rules' : 'Path'), picked.path.length > 0 && element('dd', {}, shown_path(picked.path, this.is_lsys))),
+      ...(this.can_pull ? [element('p', { class: 'note' }, this.is_lsys ? 'Drag the dot: a number of the rules follows.' : 'Drag the dot: the maps follow.')] : []));
     this.overlay.setAttribute('viewBox', `0 0 ${size.width_px} ${size.height_px}`);
     const zoomed = studio.history.now.at !== null || studio.history.now.zoom !== null;
     const place = camera && !zoomed ? projected(camera, size.width_px, size.height_px, picked.point) : null;
@@ -73,47 +74,89 @@ export class PointTool {
       return;
     }
     const { width } = this.overlay.getBoundingClientRect(), scale = width > 0 ? size.width_px / width : 1;
-    const can_pull = (studio.model?.maps.length ?? 0) > 0;
     const old = this.overlay.querySelector<SVGCircleElement>('circle');
     const marker = old ?? this.marker();
     marker.setAttribute('cx', String(place[0]));
     marker.setAttribute('cy', String(place[1]));
     marker.setAttribute('r', String(7 * scale));
-    marker.setAttribute('class', can_pull ? 'point pulls' : 'point');
+    marker.setAttribute('class', this.can_pull ? 'point pulls' : 'point');
     if (!old) this.overlay.replaceChildren(marker);
   }
 
   private marker(): SVGCircleElement {
-    const marker = svg('circle', { 'data-handle': 'point' }, svg('title', {}, 'Pull this point: the maps of its address follow'));
+    const marker = svg('circle', { 'data-handle': 'point' }, svg('title', {}, 'Drag this point: the numbers that made it follow'));
     draggable(marker, () => {
       const { picked, studio } = this, { camera, size } = studio;
-      if (!picked || !camera || !studio.model?.maps.length) return null;
+      if (!picked || !camera || !this.can_pull) return null;
       this.lies = picked.point;
+      this.number = null;
+      this.held = true;
       const scale = size.width_px / this.overlay.getBoundingClientRect().width;
       return {
         move: (_, dx, dy) => {
           picked.point = dragged(camera, size.width_px, picked.point, dx * scale, dy * scale);
           this.draw();
-          this.ask({ address: picked.address, to: picked.point });
+          this.ask(picked.point);
         },
-              };
+        end: () => {
+          this.held = false;
+          this.settle();
+        },
+      };
     });
     return marker;
   }
 
-  private async pull_now({ address, to }: Pull): Promise<void> {
-    const { studio } = this, before = studio.history.now.text;
+  /** The dot goes where the text has brought the point. */
+  private settle(): void {
+    if (!this.picked || this.held || !this.is_lsys) return;
+    this.picked.point = this.lies;
+    this.draw();
+  }
+
+  private get is_lsys(): boolean {
+    return this.studio.history.now.name.toLowerCase().endsWith('.lsys');
+  }
+
+  private get can_pull(): boolean {
+    return this.is_lsys ? (this.picked?.part.length ?? 0) > 0 : (this.studio.model?.maps.length ?? 0) > 0;
+  }
+
+  private async pull_now(to: Vec3): Promise<void> {
+    const { studio, picked } = this, before = studio.history.now.text;
+    if (!picked) return;
     try {
-      const answer = await studio.session.ask('pull', { address, from: this.lies, to });
+      const answer = this.is_lsys
+        ? await studio.session.ask('drag', { part: picked.part, from: this.lies, to, number: this.number })
+        : await studio.session.ask('pull', { address: picked.address, from: this.lies, to });
       if (studio.history.now.text !== before) return;
       if (answer['contracts'] === false) {
         studio.say(String(answer['why'] ?? 'The maps would not shrink.'));
-      } else {
-        studio.edit(answer['edits'] as Edit[], 'pull');
-        this.lies = to;
+        return;
       }
+      const edits = answer['edits'] as Edit[];
+      studio.edit(edits, 'pull');
+      this.lies = (answer['point'] as Vec3 | undefined) ?? to;
+      if (!this.is_lsys) return;
+      this.number = answer['number'] as number;
+      studio.select(edits[0]!.from, edits[0]!.from + edits[0]!.text.length);
+      studio.say(String(answer['says']));
     } catch (error) {
-      studio.say((error as Error).message);
+      // A number that has done what it can lets the hand go on.
+      if (this.number === null) studio.say((error as Error).message);
     }
+    this.settle();
   }
+}
+
+/** Parts of an L-system are named by their symbols and sizes: A_9_2 is an A. Equal ones one after the other are counted. */
+function shown_path(path: string[], is_lsys: boolean): string {
+  if (!is_lsys) return path.join(' → ');
+  const counted: { name: string; times: number }[] = [];
+  for (const whole of path) {
+    const name = whole.replace(/(_\d+)+$/, ''), last = counted.at(-1);
+    if (last?.name === name) ++last.times;
+    else counted.push({ name, times: 1 });
+  }
+  return counted.map(({ name, times }) => (times > 1 ? `${name} × ${times}` : name)).join(' → ');
 }

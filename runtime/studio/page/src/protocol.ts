@@ -13,6 +13,12 @@ export interface Camera {
   width?: number;
 }
 
+/** What the knobs are at a moment of a film. */
+export interface KeyFrame {
+  seconds: number;
+  set: Record<string, number>;
+}
+
 /** Everything that a picture depends on, except its size. Undefined and null: as the model says. */
 export interface Choices {
   name: string;
@@ -26,6 +32,8 @@ export interface Choices {
   zoom: string | null;
   engine: string | null;
   quality: string | null;
+  /** In the order of time. No picture depends on them. */
+  keys: KeyFrame[];
 }
 
 export interface Edit {

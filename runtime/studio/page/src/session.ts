@@ -105,7 +105,7 @@ export class Session {
     if (!this.waiting || !this.open) return;
     const { choices, size } = this.waiting;
     this.waiting = null;
-    const { text, ...rest } = choices;
+    const { text, keys: _, ...rest } = choices;
     const state: Record<string, unknown> = { type: 'state', number: ++this.number, ...rest };
     if (text !== this.sent_text) state['text'] = text;
     this.sent_text = text;

@@ -1,5 +1,6 @@
-// Time: a scrubber for the age or the steps, with play.
+// Time: a scrubber for the age or the steps, with play; key frames, and the film of both.
 import { element } from './dom';
+import { Film, values_at, type Course } from './film';
 import { Slider } from './slider';
 import type { Studio } from './studio';
 
@@ -7,43 +8,67 @@ type Key = 'time' | 'steps';
 
 export class Time {
   readonly element: HTMLElement;
+  readonly film: Film;
   private readonly slider: Slider;
   private readonly play_button: HTMLButtonElement;
   private readonly ends: Record<'least' | 'most' | 'seconds', HTMLInputElement>;
   private readonly key: HTMLSelectElement;
+  private readonly runs = element('input', { type: 'checkbox', id: 'time-runs' });
+  /** Where the film stands. */
+  private now_seconds = 0;
   private playing = 0;
+  /** The model for which it was chosen whether the time runs. */
+  private chosen_for = '';
 
   constructor(private readonly studio: Studio) {
     const field = (id: string, value: number, label: string) => element('input', { id, type: 'number', value, 'aria-label': label, step: 'any' });
     this.ends = { least: field('time-least', 0, 'From'), most: field('time-most', 10, 'To'), seconds: field('time-seconds', 5, 'Seconds') };
-    this.key = element('select', { id: 'time-key' }, element('option', { value: 'time' }, 'time'), element('option', { value: 'steps' }, 'steps'));
+    this.key = element('select', { id: 'time-key' }, element('option', { value: 'time' }, 'age'), element('option', { value: 'steps' }, 'steps'));
     this.slider = new Slider({
-      label: 'Time', value: 0, least: 0, most: 10,
+      label: 'Moment', value: 0, least: 0, most: 5,
       change: (value) => {
         this.stop();
         this.put(value);
       },
     });
     this.play_button = element('button', { type: 'button', class: 'quiet', id: 'play', onclick: () => (this.playing ? this.stop() : this.play()) }, 'Play');
-    for (const input of Object.values(this.ends)) input.onchange = () => this.show();
+    for (const input of [...Object.values(this.ends), this.runs]) input.onchange = () => this.show();
     this.key.onchange = () => {
       this.stop();
       this.show();
     };
+    this.film = new Film(studio, () => this.course());
     this.element = element('div', {},
-      element('div', { class: 'line' }, element('label', { for: 'time-key' }, 'Over '), this.key,
+      element('div', { class: 'line' }, this.runs, element('label', { for: 'time-runs' }, 'The model grows: '), this.key,
         element('label', {}, 'from ', this.ends.least), element('label', {}, 'to ', this.ends.most)),
-      element('div', { class: 'knob' }, element('span', { class: 'name' }, 'Now'), this.slider.range, this.slider.number,
-        element('button', { type: 'button', class: 'small', 'aria-label': 'Reset time', title: 'Reset time', onclick: () => studio.change({ [this.key.value]: null }) }, '↺')),
+      element('div', { class: 'knob' }, element('span', { class: 'name' }, 'Second'), this.slider.range, this.slider.number,
+        element('button', { type: 'button', class: 'small', 'aria-label': 'Reset time', title: 'Reset time', onclick: () => this.reset() }, '↺')),
       element('div', { class: 'line' }, this.play_button, element('label', {}, 'in ', this.ends.seconds, ' seconds')),
-      element('p', { class: 'note' }, 'A model reads the time as ', element('code', {}, 'age'), '. Each frame shows as soon as it is drawn.'),
+      this.film.element,
     );
   }
 
   show(): void {
-    const { now } = this.studio.history, key = this.key.value as Key;
-    const [least, most] = this.range;
-    this.slider.show(now[key] ?? least, least, most);
+    this.slider.show(this.now_seconds, 0, this.seconds);
+    this.film.show();
+  }
+
+  /** A plant grows by itself; the time of other models stands still until somebody wants it. */
+  model_came(): void {
+    const { name } = this.studio.history.now;
+    if (this.chosen_for === name) return;
+    this.chosen_for = name;
+    const is_lsys = name.toLowerCase().endsWith('.lsys');
+    const steps = this.studio.model?.parameters.find((parameter) => parameter.name === 'steps')?.value;
+    this.runs.checked = is_lsys;
+    if (is_lsys) this.ends.least.value = '1';
+    if (steps !== undefined) this.ends.most.value = String(steps);
+    this.show();
+  }
+
+  tab(is_shown: boolean): void {
+    if (is_shown) this.show();
+    else this.stop();
   }
 
   stop(): void {
@@ -58,24 +83,52 @@ export class Time {
     return [least, most > least ? most : least + 1];
   }
 
-  private put(value: number): void {
-    const key = this.key.value as Key;
-    const shown = key === 'steps' ? Math.max(0, Math.round(value)) : value;
-    if (this.studio.history.now[key] !== shown) this.studio.change({ [key]: shown }, 'time');
+  private get seconds(): number {
+    return Math.max(0.2, Number(this.ends.seconds.value) || 5);
+  }
+
+  private course(): Course {
+    return {
+      seconds: this.seconds, now_seconds: this.now_seconds, steps: this.runs.checked ? this.range : null,
+      show_at: (seconds) => {
+        this.stop();
+        this.put(seconds);
+      },
+    };
+  }
+
+  /** Shows a moment of the film: the knobs of its key frames, and the time. */
+  private put(seconds: number): void {
+    const { now } = this.studio.history, key = this.key.value as Key, [least, most] = this.range;
+    this.now_seconds = Math.max(0, Math.min(this.seconds, seconds));
+    this.slider.show(this.now_seconds, 0, this.seconds);
+    const set = { ...now.set, ...values_at(now.keys, this.now_seconds) };
+    const time = Number((least + ((most - least) * this.now_seconds) / this.seconds).toFixed(4));
+    const shown = !this.runs.checked ? now[key] : key === 'steps' ? Math.max(0, Math.round(time)) : time;
+    if (now[key] !== shown || JSON.stringify(now.set) !== JSON.stringify(set)) this.studio.change({ [key]: shown, set }, 'time');
+  }
+
+  private reset(): void {
+    this.now_seconds = 0;
+    this.studio.change({ time: null, steps: null });
   }
 
   private play(): void {
-    const [least, most] = this.range, seconds = Math.max(0.2, Number(this.ends.seconds.value) || 5);
-    const key = this.key.value as Key, from = this.studio.history.now[key] ?? least;
-    const begun_ms = performance.now() - (((from >= most ? least : from) - least) / (most - least)) * seconds * 1000;
+    const { keys } = this.studio.history.now;
+    if (!this.runs.checked && keys.length < 2) {
+      this.studio.say('Nothing moves yet: let the model grow, or keep two key frames.');
+      return;
+    }
+    const seconds = this.seconds, from = this.now_seconds >= seconds ? 0 : this.now_seconds;
+    const begun_ms = performance.now() - from * 1000;
     this.play_button.textContent = 'Pause';
     const frame = () => {
       this.playing = requestAnimationFrame(frame);
       // Frames are drawn one after the other: the next is asked for when the picture of this one has begun.
       if (this.studio.session.busy) return;
-      const share = (performance.now() - begun_ms) / (seconds * 1000);
-      this.put(Number((least + (most - least) * Math.min(1, share)).toFixed(4)));
-      if (share >= 1) this.stop();
+      const now_seconds = (performance.now() - begun_ms) / 1000;
+      this.put(Math.min(seconds, now_seconds));
+      if (now_seconds >= seconds) this.stop();
     };
     this.playing = requestAnimationFrame(frame);
   }

@@ -1,0 +1,310 @@
+#include "compiler/editing/drag.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "compiler/graph/run.h"
+#include "compiler/languages/lower.h"
+#include "compiler/lsys/parse/turtle_command.h"
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+/// Numbers that are tried at most, those of the last rules first.
+constexpr std::size_t most_tried = 24;
+/// The change of a number by which its effect is found, as a share of it.
+constexpr double probe_share = 1e-4, smallest_number = 0.01;
+/// The share of the way and of the place by which the point moves then, at most.
+constexpr double most_probed = 0.01;
+/// The price of a number of a rule further up, against the share of the way that is left.
+constexpr double price_of_a_rule = 0.03;
+/// A number that has to change by more than itself costs so much for each time.
+constexpr double price_of_large_changes = 0.05;
+/// A number is of use where it brings the point by this share nearer.
+constexpr double least_gain = 0.05;
+constexpr int most_steps = 6;
+
+/// A number of the text that may change.
+struct Candidate {
+    Span span;
+    double value = 0;
+    std::size_t rules_up = 0; ///< between its rule, or the first that reads it, and the part
+    Vec3 slope{0.0};          ///< of the point, by the number
+};
+
+/// The place that a part has in a graph.
+struct PartPlace {
+    Affine world_from_part;
+    std::vector<Span> rules; ///< on the way, the last one first, each once
+    const Object* object = nullptr;
+};
+
+std::optional<PartPlace> part_place(const Graph& graph, const std::vector<std::uint32_t>& instances) {
+    PartPlace place;
+    place.object = &graph.objects[graph.root];
+    for (const std::uint32_t number : instances) {
+        if (number >= place.object->instances.size()) return std::nullopt;
+        const Instance& instance = place.object->instances[number];
+        place.world_from_part = place.world_from_part * instance.parent_from_child;
+        place.rules.push_back(instance.span);
+        place.object = &graph.objects[instance.master];
+    }
+    std::ranges::reverse(place.rules);
+    std::vector<Span> once;
+    for (const Span& span : place.rules)
+        if (span.known() && span.file == FileId{0} && std::ranges::count(once, span) == 0)
+            once.push_back(span);
+    place.rules = std::move(once);
+    return place;
+}
+
+/// The string of a block, and the place that instances of its modules have.
+struct Rule {
+    const LsysString* string = nullptr;
+    Span span;
+};
+
+std::vector<Rule> rules_of(const LsysFile& tree) {
+    std::vector<Rule> rules;
+    for (const LsysBlock& block : tree.blocks) {
+        if (block.axiom) rules.push_back({&*block.axiom, block.axiom->span});
+        for (const auto* productions : {&block.productions, &block.interpret, &block.decompose})
+            for (const LsysProduction& production : *productions)
+                rules.push_back({&production.successor, production.span});
+    }
+    return rules;
+}
+
+bool reads(const Expression& expression, std::string_view name) {
+    return (expression.kind == Expression::Kind::name && expression.text == name) ||
+           std::ranges::any_of(expression.operands, [&](const Expression& one) { return reads(one, name); });
+}
+
+/// Other settings, such as the width, bring no part to another place.
+bool is_of_place(const ModelParameter& parameter) {
+    return parameter.kind != ModelParameter::Kind::setting || parameter.name == "angle" ||
+           parameter.name == "step";
+}
+
+/// A turn or a move without an argument reads the setting of the block.
+bool reads(const LsysString& string, const ModelParameter& parameter) {
+    return std::ranges::any_of(string.modules, [&](const LsysModule& module) {
+        if (parameter.kind == ModelParameter::Kind::setting)
+            return module.parameters.empty() && turtle_command(module.symbol) != TurtleCommand::none;
+        return std::ranges::any_of(module.parameters,
+                                   [&](const Expression& one) { return reads(one, parameter.name); });
+    });
+}
+
+class Dragger {
+  public:
+    Dragger(const Document& document, const DraggedPart& part, const EditContext& context)
+        : document_(document), part_(part), context_(context) {}
+
+    DragChange run() {
+        if (!document_.lsys()) return {{}, "Only parts of L-systems are dragged by their rules."};
+        SourceMap sources;
+        Diagnostics diagnostics;
+        const LoweredText lowered = lower(std::string(document_.text()), sources, diagnostics);
+        if (!lowered.graph) return {{}, "The text has errors."};
+        const std::optional<PartPlace> place = part_place(*lowered.graph, part_.instances);
+        if (!place || is_singular(place->world_from_part))
+            return {{}, "The picture shows another text: click on the part again."};
+        const Vec3 inside = inverse(place->world_from_part)(part_.from);
+        if (place->object->packed)
+            item_ = nearest_item(*place->object->packed.run, inside);
+        else
+            local_ = on_axis(place->object->primitive, inside);
+        start_ = *point_in(*place);
+        // The point need not lie on a packed part: it keeps its way from there.
+        wanted_ = part_.to - part_.from;
+        if (!(glm::length(wanted_) > 0)) return {{}, "The point is there already."};
+        std::vector<Candidate> candidates = candidates_of(*place, lowered.notes.parameters);
+        if (part_.number)
+            std::erase_if(candidates, [&](const Candidate& one) { return one.span.begin != *part_.number; });
+        if (candidates.size() > most_tried) candidates.resize(most_tried);
+        for (Candidate& candidate : candidates)
+            find_slope(candidate);
+        std::erase_if(candidates, [&](const Candidate& one) { return !(cost(one) < 1); });
+        std::ranges::stable_sort(candidates, {}, [&](const Candidate& one) { return cost(one); });
+        for (const Candidate& candidate : candidates)
+            if (auto change = change_of(candidate)) return *std::move(change);
+        return {{},
+                part_.number ? "This number brings the part no nearer: let go, and drag it again."
+                             : "No number of the rules that made this part moves it that way."};
+    }
+
+  private:
+    LoweredText lower(std::string text, SourceMap& sources, Diagnostics& diagnostics) const {
+        return lower_text(document_.name(), std::move(text), context_.lower, sources, diagnostics,
+                          context_.help);
+    }
+
+    /// How thick a segment is depends on the whole model: its axis is what turns and moves.
+    static Vec3 on_axis(const std::optional<Primitive>& primitive, Vec3 point) {
+        const bool round = primitive == PrimitiveKind::cylinder || primitive == PrimitiveKind::cone;
+        return round ? Vec3(0, point.y, 0) : point;
+    }
+
+    static std::size_t nearest_item(const Run& run, Vec3 point) {
+        std::size_t best = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < run.size(); ++i) {
+            const double distance = glm::distance(middle(run[i]), point);
+            if (!(distance < least)) continue;
+            least = distance;
+            best = i;
+        }
+        return best;
+    }
+
+    static Vec3 middle(const RunItem& item) { return item.base + 0.5 * item.axis; }
+
+    std::optional<Vec3> point_in(const PartPlace& place) const {
+        if (!item_) return place.world_from_part(local_);
+        const auto& run = place.object->packed.run;
+        if (!run || *item_ >= run->size()) return std::nullopt;
+        return place.world_from_part(middle((*run)[*item_]));
+    }
+
+    std::string text_with(const Candidate& candidate, std::string_view number) const {
+        return applied(document_.text(), {{candidate.span.begin, candidate.span.end, std::string(number)}});
+    }
+
+    /// How far the point has come with another number; nothing where the part is not there then.
+    std::optional<Vec3> moved(const Candidate& candidate, double value) const {
+        SourceMap sources;
+        Diagnostics diagnostics;
+        const LoweredText lowered =
+            lower(text_with(candidate, written(candidate, value, all_digits)), sources, diagnostics);
+        if (!lowered.graph) return std::nullopt;
+        const std::optional<PartPlace> place = part_place(*lowered.graph, part_.instances);
+        const std::optional<Vec3> point = place ? point_in(*place) : std::nullopt;
+        return point ? std::optional(*point - start_) : std::nullopt;
+    }
+
+    /// A negative number stands in parentheses where an operator may be before it.
+    std::string written(const Candidate& candidate, double value, int digits) const {
+        std::string number;
+        append_number(number, value, digits);
+        const std::string_view before = document_.text().substr(0, candidate.span.begin);
+        const std::size_t last = before.find_last_not_of(' ');
+        const bool alone = last == std::string_view::npos || before[last] == '(' || before[last] == ',' ||
+                           before[last] == '=' || std::isalpha(static_cast<unsigned char>(before[last]));
+        return value < 0 && !alone ? "(" + number + ")" : number;
+    }
+
+    std::vector<Candidate> candidates_of(const PartPlace& place,
+                                         const std::vector<ModelParameter>& parameters) const {
+        std::vector<Candidate> found;
+        const std::vector<Rule> rules = rules_of(*document_.lsys());
+        for (std::size_t up = 0; up < place.rules.size(); ++up) {
+            const auto rule = std::ranges::find(rules, place.rules[up], &Rule::span);
+            if (rule == rules.end()) continue;
+            for (const LsysModule& module : rule->string->modules)
+                for (const Expression& parameter : module.parameters)
+                    add_numbers(parameter, up, found);
+            for (const ModelParameter& parameter : parameters)
+                if (parameter.literal && parameter.span.file == FileId{0} && is_of_place(parameter) &&
+                    reads(*rule->string, parameter))
+                    found.push_back({parameter.span, parameter.value, up});
+        }
+        std::set<std::uint32_t> met;
+        std::erase_if(found, [&](const Candidate& one) { return !met.insert(one.span.begin).second; });
+        return found;
+    }
+
+    static void add_numbers(const Expression& value, std::size_t rules_up, std::vector<Candidate>& found) {
+        if (value.kind == Expression::Kind::number && value.span.known() && value.span.file == FileId{0})
+            found.push_back({value.span, value.number, rules_up});
+        for (const Expression& operand : value.operands)
+            add_numbers(operand, rules_up, found);
+    }
+
+    void find_slope(Candidate& candidate) const {
+        const double step = probe_share * std::max(std::abs(candidate.value), smallest_number);
+        const std::optional<Vec3> way = moved(candidate, candidate.value + step);
+        // A number that decides which rule is taken makes the part jump.
+        if (way && glm::length(*way) < most_probed * (glm::length(wanted_) + glm::length(start_)))
+            candidate.slope = *way / step;
+    }
+
+    static double along(Vec3 slope, Vec3 way) { return glm::dot(slope, way) / glm::dot(slope, slope); }
+
+    /// The share of the way that the number leaves, and the price of the number; 1 or more: of no use.
+    double cost(const Candidate& candidate) const {
+        if (!(glm::length(candidate.slope) > 0)) return 1;
+        const double change = along(candidate.slope, wanted_);
+        const double left = glm::length(wanted_ - change * candidate.slope) / glm::length(wanted_);
+        if (!(left < 1 - least_gain)) return 1;
+        const double times = std::abs(change) / std::max(std::abs(candidate.value), smallest_number);
+        return std::min(left + price_of_a_rule * static_cast<double>(candidate.rules_up) +
+                            price_of_large_changes * std::log2(1 + times),
+                        1 - least_gain);
+    }
+
+    /// Goes with the number until the point comes no nearer.
+    std::optional<DragChange> change_of(const Candidate& candidate) const {
+        double value = candidate.value;
+        Vec3 way(0.0), slope = candidate.slope;
+        for (int step = 0; step < most_steps; ++step) {
+            const double by = along(slope, wanted_ - way);
+            if (!(std::abs(by) * glm::length(slope) > least_gain * least_gain * glm::length(wanted_))) break;
+            const std::optional<Vec3> next = moved(candidate, value + by);
+            if (!next || !(glm::distance(*next, wanted_) < glm::distance(way, wanted_))) break;
+            slope = (*next - way) / by;
+            value += by;
+            way = *next;
+            if (!(glm::length(slope) > 0)) break;
+        }
+        if (!(glm::distance(way, wanted_) < (1 - least_gain) * glm::length(wanted_))) return std::nullopt;
+        const std::string number = readable(candidate, value, slope);
+        DragChange change;
+        change.edits = {{candidate.span.begin, candidate.span.end, number}};
+        change.number = candidate.span.begin;
+        change.point = part_.from + way;
+        change.says =
+            fmt::format("line {}: {} became {}", document_.sources().position(0, candidate.span.begin).line,
+                        document_.text(candidate.span), number);
+        return change;
+    }
+
+    /// With as few digits as the hand can tell.
+    std::string readable(const Candidate& candidate, double value, Vec3 slope) const {
+        constexpr double noticed = 0.02; // of the way
+        for (int digits = fewest_digits; digits < all_digits; ++digits) {
+            std::string number;
+            append_number(number, value, digits);
+            const double off = std::abs(parse_number(number).value_or(value) - value);
+            if (off * glm::length(slope) <= noticed * glm::length(wanted_))
+                return written(candidate, value, digits);
+        }
+        return written(candidate, value, all_digits);
+    }
+
+    static constexpr int fewest_digits = 3, all_digits = 17;
+
+    const Document& document_;
+    const DraggedPart& part_;
+    const EditContext& context_;
+    Vec3 local_{0.0};                 ///< the point in the part's frame
+    std::optional<std::size_t> item_; ///< of a packed part, in place of that
+    Vec3 start_{0.0}, wanted_{0.0};   ///< where the point is, and its way
+};
+
+} // namespace
+
+DragChange drag_part(const Document& document, const DraggedPart& part, const EditContext& context) {
+    return Dragger(document, part, context).run();
+}
+
+} // namespace graftal

@@ -23,7 +23,7 @@ const std::string twig = "camera { location: 0, 1, 6  look_at: 0, 1, 0  angle: 4
                          "}\n";
 constexpr double height_px = 360, middle_x_px = 320, middle_y_px = 180;
 
-Vec3 vector_of(const json& numbers) {
+Vec3 part_place(const json& numbers) {
     return {numbers[0].get<double>(), numbers[1].get<double>(), numbers[2].get<double>()};
 }
 
@@ -67,19 +67,19 @@ TEST_F(Drag, ATurnOfATwigChangesItsAngle) {
     ASSERT_TRUE(part.contains("part")) << part;
     EXPECT_EQ(twig.substr(part["from"].get<std::size_t>() + 2, 4), "A ->") << "the rule that made it";
     const Vec3 way = middle(55, 1) - middle(40, 1);
-    const json change = dragged(part, vector_of(part["point"]) + way);
+    const json change = dragged(part, part_place(part["point"]) + way);
     ASSERT_EQ(change["edits"].size(), 1u) << change;
     EXPECT_EQ(change["edits"][0]["from"], place_in_twig("40)F"));
     EXPECT_EQ(change["edits"][0]["to"], place_in_twig("40)F") + 2) << "the comments stay";
     EXPECT_NEAR(std::stod(change["edits"][0]["text"].get<std::string>()), 55, 1);
     EXPECT_EQ(change["number"], place_in_twig("40)F"));
-    EXPECT_LT(glm::distance(vector_of(change["point"]), vector_of(part["point"]) + way), 0.02);
+    EXPECT_LT(glm::distance(part_place(change["point"]), part_place(part["point"]) + way), 0.02);
 }
 
 TEST_F(Drag, AStretchOfATwigChangesTheLetThatItsLengthComesFrom) {
     show(twig);
     const json part = picked(middle(40, 1).x, middle(40, 1).y);
-    const json change = dragged(part, vector_of(part["point"]) + middle(40, 1.5) - middle(40, 1));
+    const json change = dragged(part, part_place(part["point"]) + middle(40, 1.5) - middle(40, 1));
     ASSERT_EQ(change["edits"].size(), 1u) << change;
     EXPECT_EQ(change["edits"][0]["from"], place_in_twig("1\nlsys"));
     EXPECT_NEAR(std::stod(change["edits"][0]["text"].get<std::string>()), 1.5, 0.05);
@@ -89,10 +89,10 @@ TEST_F(Drag, AStretchOfATwigChangesTheLetThatItsLengthComesFrom) {
 TEST_F(Drag, ADragGoesOnWithTheNumberThatItBeganWith) {
     show(twig);
     const json part = picked(middle(40, 1).x, middle(40, 1).y);
-    const Vec3 along = vector_of(part["point"]) + middle(40, 1.5) - middle(40, 1);
+    const Vec3 along = part_place(part["point"]) + middle(40, 1.5) - middle(40, 1);
     EXPECT_TRUE(dragged(part, along, place_in_twig("40)F")).contains("error"))
         << "an angle makes nothing longer";
-    const Vec3 slanting = vector_of(part["point"]) + middle(60, 1.2) - middle(40, 1);
+    const Vec3 slanting = part_place(part["point"]) + middle(60, 1.2) - middle(40, 1);
     EXPECT_EQ(dragged(part, slanting, place_in_twig("40)F"))["edits"][0]["from"], place_in_twig("40)F"));
 }
 
@@ -102,7 +102,7 @@ TEST_F(Drag, ATurnWithoutANumberReadsTheAngleOfTheBlock) {
     text.replace(text.find("90 //"), 2, "45");
     show(text);
     const json part = picked(middle(45, 1).x, middle(45, 1).y);
-    const json change = dragged(part, vector_of(part["point"]) + middle(65, 1) - middle(45, 1));
+    const json change = dragged(part, part_place(part["point"]) + middle(65, 1) - middle(45, 1));
     ASSERT_EQ(change["edits"].size(), 1u) << change;
     EXPECT_EQ(change["edits"][0]["from"], place_in_twig("90 //"));
     EXPECT_NEAR(std::stod(change["edits"][0]["text"].get<std::string>()), 65, 1);
@@ -112,7 +112,7 @@ TEST_F(Drag, WhatTheRulesCannotDoIsRefused) {
     show(twig);
     const json part = picked(0, 0.5);
     ASSERT_TRUE(part.contains("part")) << part;
-    EXPECT_TRUE(dragged(part, vector_of(part["point"]) + Vec3(0, 0, 1)).contains("error"))
+    EXPECT_TRUE(dragged(part, part_place(part["point"]) + Vec3(0, 0, 1)).contains("error"))
         << "nothing turns the stem";
     EXPECT_TRUE(
         page.ask("drag", {{"part", {99, 99}}, {"from", {0, 0, 0}}, {"to", {1, 0, 0}}}).contains("error"));

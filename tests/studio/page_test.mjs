@@ -371,7 +371,7 @@ test('a file is opened, its text saved; the divider moves', async (hand, page) =
 
 test('files and the command line', async (hand, page) => {
   await page.click('#tab-out');
-  await hand.until(async () => /graftal render fern\.rifs --size/.test(await page.textContent('pre')), 'the command shows');
+  await hand.until(async () => /graftal render fern\.rifs --size/.test(await page.textContent('[aria-label="Command line"]')), 'the command shows');
   await page.click('text=2×');
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save-picture')]);
   assert.equal(download.suggestedFilename(), 'fern.png');

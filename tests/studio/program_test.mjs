@@ -30,9 +30,11 @@ const square = `rifs square {
 }
 `;
 
+/** Sessions run at once: each has a folder of its own. */
 async function serve(text = fern) {
-  fs.writeFileSync(path.join(folder, 'model.rifs'), text);
-  const child = spawn(program, ['studio', '--no-browser', 'model.rifs'], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] });
+  const own = fs.mkdtempSync(path.join(folder, 'session-'));
+  fs.writeFileSync(path.join(own, 'model.rifs'), text);
+  const child = spawn(program, ['studio', '--no-browser', 'model.rifs'], { cwd: own, stdio: ['ignore', 'pipe', 'inherit'] });
   const address = await new Promise((resolve, reject) => {
     let told = '';
     child.on('exit', (code) => reject(new Error(`graftal studio ended with ${code}`)));
@@ -42,7 +44,7 @@ async function serve(text = fern) {
       if (found) resolve(found[0]);
     });
   });
-  return { address, told: { states: [], asks: [] }, close: () => child.kill('SIGINT') };
+  return { address, own, told: { states: [], asks: [] }, close: () => child.kill('SIGINT') };
 }
 
 const browser = await open_browser(modules), test = tester(browser, serve);
@@ -99,7 +101,7 @@ test('a click selects the rule; the wheel to 1e30, and back to the same picture'
   assert.equal(await hand.pixels(), before);
 }, { ...small, opened: square });
 
-test('the saved picture is that of the command line; a reload finds all', async (hand, page) => {
+test('the saved picture is that of the command line; a reload finds all', async (hand, page, { own }) => {
   await page.selectOption('#quality', 'draft');
   await page.locator('.knob input[aria-label="lean"]').press('PageUp');
   await hand.settled();
@@ -109,8 +111,8 @@ test('the saved picture is that of the command line; a reload finds all', async 
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save-picture')]);
   const saved = fs.readFileSync(await download.path());
   const { command } = await page.evaluate(async () => window.studio.session.ask('command'));
-  const drawn = path.join(folder, 'drawn.png');
-  execFileSync('bash', ['-c', `${command.replace(/^graftal/, '"$0"').replace(/--size \S+/, '--size 160x90')} -o "$1"`, program, drawn], { cwd: folder, stdio: 'ignore' });
+  const drawn = path.join(own, 'drawn.png');
+  execFileSync('bash', ['-c', `${command.replace(/^graftal/, '"$0"').replace(/--size \S+/, '--size 160x90')} -o "$1"`, program, drawn], { cwd: own, stdio: 'ignore' });
   assert.ok(saved.equals(fs.readFileSync(drawn)), `the picture is that of ${command}`);
   const before = await hand.pixels(), kept = await page.evaluate(() => window.studio.history.now);
   await page.reload();

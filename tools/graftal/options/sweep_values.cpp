@@ -51,7 +51,7 @@ Sweep camera_sweep(const std::string& name, const CameraOverride& from, const Ca
     return {"--camera " + name, apply};
 }
 
-/// Those without a time lie evenly between their neighbours.
+/// Values without a time lie evenly between their neighbours.
 void spread_evenly(std::vector<SweepKey>& keys, const std::vector<bool>& timed) {
     for (std::size_t begin = 0, end = 1; end < keys.size(); ++end) {
         if (!timed[end]) continue;

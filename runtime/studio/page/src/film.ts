@@ -54,7 +54,7 @@ export class Film {
   private readonly save = element('button', { type: 'button', class: 'quiet', id: 'save-film', onclick: () => void this.write() }, 'Save film');
   private readonly cancel = element('button', { type: 'button', class: 'quiet', id: 'stop-film', hidden: true, onclick: () => void this.studio.session.ask('stop') }, 'Stop');
   private readonly bar = element('progress', { max: 1, hidden: true, 'aria-label': 'Share of the film that is drawn' });
-  private readonly command = element('pre', { tabindex: 0, 'aria-label': 'Command line of the film' });
+  private readonly command = element('pre', { tabindex: 0, role: 'region', 'aria-label': 'Command line of the film' });
   private readonly soon_command = soon(() => void this.show_command(), 300);
   private file_id = 0;
 

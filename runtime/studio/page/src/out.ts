@@ -12,7 +12,7 @@ export class Out {
     element('option', { value: '.png' }, 'PNG'), element('option', { value: '.exr' }, 'EXR'));
   private readonly format = element('select', { id: 'format' });
   private readonly export_room = element('div', {});
-  private readonly command = element('pre', { tabindex: 0, 'aria-label': 'Command line' });
+  private readonly command = element('pre', { tabindex: 0, role: 'region', 'aria-label': 'Command line' });
   private readonly path = element('input', { type: 'text', id: 'path', placeholder: 'name.png', 'aria-label': 'Name of the picture file', spellcheck: 'false' });
 
   constructor(private readonly studio: Studio, private readonly open: (choices: Partial<Choices>) => void) {

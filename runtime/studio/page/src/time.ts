@@ -23,7 +23,7 @@ export class Time {
   constructor(private readonly studio: Studio) {
     const field = (id: string, value: number, label: string) => element('input', { id, type: 'number', value, 'aria-label': label, step: 'any' });
     this.ends = { least: field('time-least', 0, 'From'), most: field('time-most', 10, 'To'), seconds: field('time-seconds', 5, 'Seconds') };
-    this.key = element('select', { id: 'time-key' }, element('option', { value: 'time' }, 'age'), element('option', { value: 'steps' }, 'steps'));
+    this.key = element('select', { id: 'time-key', 'aria-label': 'Time' }, element('option', { value: 'time' }, 'age'), element('option', { value: 'steps' }, 'steps'));
     this.slider = new Slider({
       label: 'Moment', value: 0, least: 0, most: 5,
       change: (value) => {

@@ -30,7 +30,7 @@ bool begins_line(std::string_view word) {
     static constexpr auto words = std::to_array<std::string_view>(
         {"ambient", "angle",     "around",   "axiom",   "background", "below",    "by",        "camera",
          "chance",  "codes",     "color",    "colors",  "condense",   "count",    "decompose", "diffuse",
-         "follow",  "ground",    "height",   "horizon", "inner",      "instance", "interpret", "lean",
+         "difference", "follow",  "ground",    "height",   "horizon", "inner",      "instance", "interpret", "intersection", "lean",
          "let",     "light",     "location", "look_at", "map",        "material", "matrix",    "over",
          "rotate",  "roughness", "scale",    "scatter", "seed",       "shear",    "size",      "specular",
          "start",   "step",      "steps",    "sun",     "terminal",   "texture",  "tint",      "translate",

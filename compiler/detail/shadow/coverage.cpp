@@ -98,7 +98,7 @@ class Fitter {
 
     bool fittable(NodeId id) const {
         const CutNode& node = cut_.nodes[id];
-        return !node.primitive && !node.edges.empty() && node.edges.size() <= most_edges &&
+        return !node.primitive && !node.is_combined() && !node.edges.empty() && node.edges.size() <= most_edges &&
                node.ball.radius > 0;
     }
 

@@ -1,5 +1,6 @@
 // Intersections and differences, from the text to the graph and back.
 
+#include <algorithm>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -92,8 +93,9 @@ TEST(Combination, is_left_whole_by_hoisting) {
                           "object all { a  cone }");
     const Graph hoisted = hoist_placements(*model.graph).graph;
     EXPECT_TRUE(verify(hoisted).empty());
-    for (const Object& object : hoisted.objects)
-        if (object.name == "a") EXPECT_EQ(object.instances.size(), 2u);
+    const auto a = std::ranges::find(hoisted.objects, "a", &Object::name);
+    ASSERT_NE(a, hoisted.objects.end());
+    EXPECT_EQ(a->instances.size(), 2u);
 }
 
 TEST(Combination, limits_how_deep_it_nests) {

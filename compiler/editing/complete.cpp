@@ -55,7 +55,8 @@ class Completer {
             around != WordPlace::orbit)
             return Wanted::maps;
         if (after == "condense" || after == "terminal" || after == "union" || after == "intersection" ||
-            after == "difference" || after == "instance" || after == "scatter" || after == "~" || around == WordPlace::primitive)
+            after == "difference" || after == "instance" || after == "scatter" || after == "~" ||
+            around == WordPlace::primitive)
             return Wanted::objects;
         if (after == "rifs" || after == "lsys" || after == "object" || after == "use" || after == "map" ||
             after == "let" || after == "inner" || after == "orbit" || after == "canonical")

@@ -25,10 +25,10 @@
 // instances of no level, are drawn where it is drawn whole, and are never cut themselves.
 //
 // Combined objects. An object may also be the intersection of its instances, or a difference: the first one
-// less all others. An instance of a combined object is an *operand*: a solid, the union of all that is drawn of
-// its master, where that lies in space (planes are half spaces, below). Combined objects lie in no cycle, and
-// have bounds. Where levels end at one without a terminal, it combines its ending operands, unless its first
-// operand does not end.
+// less all others. An instance of a combined object is an *operand*: a solid, the union of all that is drawn
+// of its master, where that lies in space (planes are half spaces, below). Combined objects lie in no cycle,
+// and have bounds. Where levels end at one without a terminal, it combines its ending operands, unless its
+// first operand does not end.
 //
 // Tints compose along a path from the root by PathTint, parent in front. The material nearest to the
 // primitive wins.
@@ -78,11 +78,11 @@ struct Object {
     std::optional<Primitive> primitive; ///< then there are no instances and no terminal
     std::vector<Instance> instances;    ///< in the order of the text
     Combination combination = Combination::unite; ///< of the instances
-    std::optional<Instance> terminal;   ///< drawn in place of the object where recursion is cut; its
-                                        ///< master must be ending
-    PackedEdges packed;                 ///< in place of instances; means what they would, in this order
-    double terminal_px = 0;             ///< size on screen from which down the terminal is drawn; 0: that of
-                                        ///< what is culled
+    std::optional<Instance> terminal; ///< drawn in place of the object where recursion is cut; its
+                                      ///< master must be ending
+    PackedEdges packed;               ///< in place of instances; means what they would, in this order
+    double terminal_px = 0;           ///< size on screen from which down the terminal is drawn; 0: that of
+                                      ///< what is culled
     Span span;
 
     /// Not a union ("Combined objects").
@@ -111,10 +111,10 @@ ObjectId first_combined(const Graph& graph);
 /// All edges of the graph.
 std::size_t edge_count(const Graph& graph);
 
-/// Equal structure: the same objects, names, combinations, instances (in order), transforms to the last bit, tints, levels,
-/// chances, materials, settings and root, and as many primitives. Packed edges equal the instances that they
-/// mean; they name kinds and not objects, so where a graph has some, primitives are not counted. Ids may
-/// differ, spans do not count.
+/// Equal structure: the same objects, names, combinations, instances (in order), transforms to the last bit,
+/// tints, levels, chances, materials, settings and root, and as many primitives. Packed edges equal the
+/// instances that they mean; they name kinds and not objects, so where a graph has some, primitives are not
+/// counted. Ids may differ, spans do not count.
 bool equal(const Graph& a, const Graph& b);
 
 } // namespace graftal

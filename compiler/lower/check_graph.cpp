@@ -43,10 +43,12 @@ class Operands {
         const Object& object = graph_.objects[id];
         const std::string_view word = word_of(object);
         if (components_.cyclic[components_.component_of[id]]) {
-            diagnostics.error(object.span, fmt::format("'{}' leads back to itself by a part of its {}",
-                                                       object.name, word))
-                .with_hint("let the recursion go through unions: the parts of a difference or an intersection "
-                           "may be recursive themselves");
+            diagnostics
+                .error(object.span,
+                       fmt::format("'{}' leads back to itself by a part of its {}", object.name, word))
+                .with_hint(
+                    "let the recursion go through unions: the parts of a difference or an intersection "
+                    "may be recursive themselves");
             return false;
         }
         if (holds_plane[id]) {
@@ -57,9 +59,9 @@ class Operands {
             return false;
         }
         if (depth_[id] > deepest_combination) {
-            diagnostics.error(object.span,
-                              fmt::format("'{}' nests differences and intersections more than {} deep",
-                                          object.name, deepest_combination))
+            diagnostics
+                .error(object.span, fmt::format("'{}' nests differences and intersections more than {} deep",
+                                                object.name, deepest_combination))
                 .with_hint("a difference takes away any number of parts at once");
             return false;
         }
@@ -72,13 +74,13 @@ class Operands {
     static constexpr ObjectId nothing = UINT32_MAX;
 
     bool check(const Object& object, const Instance& instance, Diagnostics& diagnostics) const {
-        const ObjectId culprit = is_singular(instance.parent_from_child) ? instance.master
-                                                                          : hollow_[instance.master];
+        const ObjectId culprit =
+            is_singular(instance.parent_from_child) ? instance.master : hollow_[instance.master];
         if (culprit == nothing) return true;
         const Object& part = graph_.objects[culprit];
         const std::string& name = graph_.objects[instance.master].name;
-        const std::string within =
-            culprit == instance.master ? fmt::format("'{}'", name) : fmt::format("'{}' in '{}'", part.name, name);
+        const std::string within = culprit == instance.master ? fmt::format("'{}'", name)
+                                                              : fmt::format("'{}' in '{}'", part.name, name);
         Diagnostic& error = diagnostics.error(
             instance.span, part.primitive && !encloses_volume(*part.primitive)
                                ? fmt::format("{} encloses no volume, so it cannot be a part of the {} '{}'",
@@ -88,8 +90,9 @@ class Operands {
         if (part.primitive == PrimitiveKind::mesh)
             error.with_hint("each side of a triangle of the mesh has to be a side of another");
         else if (part.primitive && !encloses_volume(*part.primitive))
-            error.with_hint("parts are made of spheres, cubes, cylinders, cones, frusta, tori, superellipsoids, "
-                            "sphere sweeps, closed meshes, and planes as half spaces");
+            error.with_hint(
+                "parts are made of spheres, cubes, cylinders, cones, frusta, tori, superellipsoids, "
+                "sphere sweeps, closed meshes, and planes as half spaces");
         else
             error.with_hint("scale it by more than 0 in all directions");
         return false;
@@ -115,7 +118,8 @@ class Operands {
         if (object.primitive && !encloses_volume(*object.primitive)) hollow_[id] = id;
         const auto look_through = [&](const Instance& instance) {
             if (hollow_[id] == nothing)
-                hollow_[id] = is_singular(instance.parent_from_child) ? instance.master : hollow_[instance.master];
+                hollow_[id] =
+                    is_singular(instance.parent_from_child) ? instance.master : hollow_[instance.master];
             const bool counts = object.is_combined() && !components_.cyclic[components_.component_of[id]];
             depth_[id] = std::max(depth_[id], depth_[instance.master] + (counts ? 1 : 0));
         };
@@ -127,7 +131,7 @@ class Operands {
 
     const Graph& graph_;
     const Components& components_;
-    std::vector<ObjectId> hollow_;      ///< by object: what in it is no solid
+    std::vector<ObjectId> hollow_;     ///< by object: what in it is no solid
     std::vector<std::uint32_t> depth_; ///< by object: of combined objects in it, itself among them
 };
 

@@ -124,15 +124,16 @@ Edges edges_of(const Graph& graph, Alike alike) {
         const Object& object = graph.objects[user];
         const double chances = chance_sum(object);
         for (const Instance& instance : object.instances) {
-            edges.labels_of[user].push_back(labels.of(
-                alike == Alike::in_shape
-                    ? place_of(instance, role_of(object, instance))
-                    : placement_of(instance, std::nullopt, chance_share(instance.chance, chances),
-                                   role_of(object, instance))));
+            edges.labels_of[user].push_back(
+                labels.of(alike == Alike::in_shape
+                              ? place_of(instance, role_of(object, instance))
+                              : placement_of(instance, std::nullopt, chance_share(instance.chance, chances),
+                                             role_of(object, instance))));
             ++edges.first_arrival[instance.master + 1];
         }
         if (object.terminal && alike == Alike::in_all) {
-            edges.labels_of[user].push_back(labels.of(placement_of(*object.terminal, object.terminal_px, 0, 0)));
+            edges.labels_of[user].push_back(
+                labels.of(placement_of(*object.terminal, object.terminal_px, 0, 0)));
             ++edges.first_arrival[object.terminal->master + 1];
         }
     }

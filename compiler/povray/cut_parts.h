@@ -37,7 +37,7 @@ struct PlacementGroup {
     std::uint32_t palette = 0;
     PathTint tint;
     Material material;
-    double pattern_size = 1; ///< where the material has a pattern
+    double pattern_size = 1;            ///< where the material has a pattern
     std::uint32_t operand = no_operand; ///< that the placements are parts of
     std::vector<Placement> placements;
     std::vector<PackedPlacements> packed; ///< more placements

@@ -286,12 +286,13 @@ class Rerooter {
 
     bool refuse_combined(const GraphStep& step) {
         const Object& object = model_.graph.objects[step.object];
-        return refuse(fmt::format("the address leads into '{}', whose parts are not drawn by themselves: it is "
-                                  "their {}",
-                                  object.name,
-                                  object.combination == Combination::subtract ? "difference" : "intersection"),
-                      fmt::format("let the address end at '{}', or draw the part as an object of its own",
-                                  object.name));
+        return refuse(
+            fmt::format("the address leads into '{}', whose parts are not drawn by themselves: it is "
+                        "their {}",
+                        object.name,
+                        object.combination == Combination::subtract ? "difference" : "intersection"),
+            fmt::format("let the address end at '{}', or draw the part as an object of its own",
+                        object.name));
     }
 
     bool refuse_crowd() {

@@ -9,9 +9,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "compiler/graph/refuse_combined.h"
 #include "compiler/chaos/chaos_game.h"
 #include "compiler/chaos/ordinary_ifs.h"
+#include "compiler/graph/refuse_combined.h"
 #include "compiler/support/number.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/points/distance_transform.h"

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "compiler/graph/refuse_combined.h"
 #include "compiler/chaos/unroll.h"
+#include "compiler/graph/refuse_combined.h"
 #include "compiler/session/frame_model.h"
 #include "compiler/support/check.h"
 #include "runtime/image/develop.h"

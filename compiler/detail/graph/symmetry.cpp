@@ -25,9 +25,9 @@ class CutShape {
 
     bool alike(NodeId a, NodeId b) const {
         const CutNode &x = cut_.nodes[a], &y = cut_.nodes[b];
-        return x.primitive == y.primitive && x.combination == y.combination && x.cell == y.cell && x.unending == y.unending &&
-               x.sealed == y.sealed && x.unbounded == y.unbounded && x.cullable == y.cullable &&
-               x.terminal_px == y.terminal_px;
+        return x.primitive == y.primitive && x.combination == y.combination && x.cell == y.cell &&
+               x.unending == y.unending && x.sealed == y.sealed && x.unbounded == y.unbounded &&
+               x.cullable == y.cullable && x.terminal_px == y.terminal_px;
     }
 
     /// True for a cell, whose parts are no edges, and for operands, which take parts.

@@ -74,8 +74,8 @@ struct InstRepeat {
     Span span;
 };
 
-/// `union:`, `intersection:`, `difference:`, `instance:`, a bare name, `terminal:` or `scatter:`, and the lines
-/// after it, which hold for each of its masters, the first line applied first.
+/// `union:`, `intersection:`, `difference:`, `instance:`, a bare name, `terminal:` or `scatter:`, and the
+/// lines after it, which hold for each of its masters, the first line applied first.
 struct InstGroup {
     bool terminal = false;
     std::optional<Expression> below; ///< of a terminal: the size from which down it is drawn

@@ -276,7 +276,8 @@ class BodyParser {
             definition_.combination_span = keyword.span;
         } else if (*definition_.combination != *named) {
             diagnostics_
-                .error(keyword.span, fmt::format("object '{}' combines its parts in two ways", definition_.name))
+                .error(keyword.span,
+                       fmt::format("object '{}' combines its parts in two ways", definition_.name))
                 .with_note(definition_.combination_span, "the first is here")
                 .with_hint(fmt::format("define an object for the {} of its own, and name that object here",
                                        keyword.text));

@@ -48,8 +48,7 @@ class Cutter {
            const CutOptions& cut_options, Diagnostics& diagnostics, const Control& control)
         : graph_(graph), view_(view), options_(options), cut_options_(cut_options),
           flattens_(cut_options.flatten || first_combined(graph) < graph.objects.size()),
-          diagnostics_(diagnostics),
-          prepared_(prepared), cut_(prepared_.cut), symmetry_(prepared_.symmetry),
+          diagnostics_(diagnostics), prepared_(prepared), cut_(prepared_.cut), symmetry_(prepared_.symmetry),
           meter_(control, "cut", pieces_a_look) {}
 
     std::optional<Cut> run() {

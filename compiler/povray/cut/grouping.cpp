@@ -118,7 +118,8 @@ void Grouping::add_textured_body(const TexturedPrimitive& shape) {
 }
 
 void Grouping::add_textured(const Placed& thing) {
-    place_painted(*thing.textured, thing.world_from_thing, thing.tint, {thing.material, thing.light_share, thing.operand},
+    place_painted(*thing.textured, thing.world_from_thing, thing.tint,
+                  {thing.material, thing.light_share, thing.operand},
                   part_size(thing.painted, thing.world_from_thing.linear));
     include(transformed(thing.world_from_thing, box_[*thing.textured]));
 }
@@ -185,8 +186,8 @@ PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& tint, 
     const auto next = static_cast<std::uint32_t>(result_.groups.size());
     const std::uint32_t id = group_ids_.find_or_add(hash, next, [&](std::uint32_t other) {
         const PlacementGroup& group = result_.groups[other];
-        return group.palette == palette && group.operand == operand && group.tint == tint && group.pattern_size == size &&
-               share_finish(group.material, finish);
+        return group.palette == palette && group.operand == operand && group.tint == tint &&
+               group.pattern_size == size && share_finish(group.material, finish);
     });
     if (id == next) result_.groups.push_back({palette, tint, finish, size, operand, {}, {}});
     return result_.groups[id];

@@ -101,7 +101,8 @@ class Placing {
         if (!holds_combined_ && !node.unbounded && !piece.faint && !hair && weight.leaves > 1 &&
             (weight.triangles <= choice_.threshold || weights_.is_shell(kind)) && place_mesh(piece, kind))
             return;
-        if (!cut && !piece.is_of_solid() && PlacedRuns::can_hold(cut_, piece)) return out_.runs.add(piece, *node.cell);
+        if (!cut && !piece.is_of_solid() && PlacedRuns::can_hold(cut_, piece))
+            return out_.runs.add(piece, *node.cell);
         const bool combined = node.is_combined() && !(cut && node.terminal);
         std::uint32_t operand = combined ? add_operands(node, cut, piece.operand) : piece.operand;
         bool placeable = true;
@@ -172,8 +173,8 @@ class Placing {
                         colour_of_proxy(node).over(piece.inherited));
     }
 
-    void place_primitive(const Primitive& primitive, const Affine& world_from_primitive, const OperandPiece& piece,
-                         Rgb base) {
+    void place_primitive(const Primitive& primitive, const Affine& world_from_primitive,
+                         const OperandPiece& piece, Rgb base) {
         Placed thing;
         thing.primitive = out_.primitives.of(primitive);
         thing.operand = piece.operand;
@@ -189,8 +190,8 @@ class Placing {
         }
         if (thing.world_from_thing != world_from_primitive) more_work_ += work_of_widening;
         const double half_width = projection_.least_half_width(ball);
-        const bool speck =
-            !piece.is_of_solid() && piece.faint && !choice_.spelt_out && largest_stretch(world_from_primitive.linear) <= half_width;
+        const bool speck = !piece.is_of_solid() && piece.faint && !choice_.spelt_out &&
+                           largest_stretch(world_from_primitive.linear) <= half_width;
         const Affine mark = speck ? speck_mark(thing.world_from_thing, half_width) : thing.world_from_thing;
         if (!piece.is_of_solid() && !seen_.insert(2 * thing.primitive, mark)) return;
         note_finest(ball);
@@ -200,7 +201,8 @@ class Placing {
         keep(thing);
     }
 
-    Affine drawn(const Primitive& primitive, const Affine& world_from_primitive, const OperandPiece& piece) const {
+    Affine drawn(const Primitive& primitive, const Affine& world_from_primitive,
+                 const OperandPiece& piece) const {
         if (primitive == PrimitiveKind::plane) return world_from_primitive;
         return drawn_leaf(primitive, world_from_primitive, piece.faint,
                           projection_.least_half_width(world_ball(cut_, piece)))
@@ -222,8 +224,7 @@ class Placing {
         const auto [place, added] =
             textured_of_.emplace(shape, static_cast<std::uint32_t>(out_.textured.size()));
         if (added) out_.textured.push_back(shape);
-        if (!piece.is_of_solid() &&
-            !seen_.insert(2 * out_.primitives.of(primitive), thing.world_from_thing))
+        if (!piece.is_of_solid() && !seen_.insert(2 * out_.primitives.of(primitive), thing.world_from_thing))
             return;
         note_finest(ball);
         thing.textured = place->second;
@@ -237,8 +238,8 @@ class Placing {
     /// The mesh that serves the piece, and whether it is a new one. As for parts that are drawn wider than
     /// they are, one that lies alike; nothing where there are too many that do not, and a mesh would not be
     /// shared.
-    std::optional<std::pair<std::uint32_t, bool>> request_for(const RequestKey& key, const OperandPiece& piece,
-                                                              bool shell) {
+    std::optional<std::pair<std::uint32_t, bool>> request_for(const RequestKey& key,
+                                                              const OperandPiece& piece, bool shell) {
         std::vector<std::uint32_t>& alike = request_of_[key];
         Mat3 shape(0.0);
         if (cut_.nodes[piece.node].widens && projection_.culls() && !shell) {
@@ -341,7 +342,7 @@ class Placing {
     bool spells_out_specks_ = false;
     const bool holds_combined_;
     std::uint32_t operands_ = 0; ///< so far
-    double more_work_ = 0; ///< in leaves, for the piece under way
+    double more_work_ = 0;       ///< in leaves, for the piece under way
     std::map<RequestKey, std::vector<std::uint32_t>> request_of_;
     std::map<PainterKey, std::uint32_t> painter_of_;
 };

@@ -52,8 +52,7 @@ bool PovrayBodies::declare(SdlWriter& out, ProgressMarks& progress) const {
         const Mesh& mesh = std::get<Mesh>(cut_.bodies[i].shape);
         out << "\n// " << harmless(cut_.bodies[i].name) << ": "
             << static_cast<std::uint64_t>(mesh.triangles.size()) << " triangles\n";
-        if (!declare_mesh(out, uses_[i].name, mesh, uses_[i].palette, uses_[i].solid, progress))
-            return false;
+        if (!declare_mesh(out, uses_[i].name, mesh, uses_[i].palette, uses_[i].solid, progress)) return false;
     }
     return !out.stopped();
 }

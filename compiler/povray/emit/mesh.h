@@ -9,7 +9,8 @@
 namespace graftal {
 
 /// `#declare NAME = mesh2 { ... }`, without texture. `palette` adds a point of texture space to each
-/// triangle, by its slot (palette.h). `solid` lets POV-Ray tell what lies inside. Requires at least one triangle. False if the sink stopped.
+/// triangle, by its slot (palette.h). `solid` lets POV-Ray tell what lies inside. Requires at least one
+/// triangle. False if the sink stopped.
 bool declare_mesh(SdlWriter& out, std::string_view name, const Mesh& mesh, bool palette, bool solid,
                   ProgressMarks& progress);
 

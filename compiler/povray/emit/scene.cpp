@@ -202,7 +202,8 @@ bool Emitter::is_empty(const CombinedPart& part) const {
 /// The first that a part of it has: POV-Ray gives it to the whole.
 std::optional<Interior> Emitter::interior_of_part(const CombinedPart& part) const {
     for (std::uint32_t i = 0; i < part.operand_count; ++i) {
-        if (const auto parts = parts_of_operand_.find(part.first_operand + i); parts != parts_of_operand_.end())
+        if (const auto parts = parts_of_operand_.find(part.first_operand + i);
+            parts != parts_of_operand_.end())
             for (const Bucket& bucket : parts->second)
                 if (bucket.interior) return bucket.interior;
         if (const auto held = combined_of_operand_.find(part.first_operand + i);
@@ -370,9 +371,9 @@ bool Emitter::write_include(std::vector<PaletteImage>& pictures) {
     if (!bodies_.declare(out_, progress_)) return false;
     out_ << "\n#declare " << identifier_ << " =\n";
     const auto whole = combined_of_operand_.find(no_operand);
-    const bool single = buckets_.size() + planes_.size() +
-                            (whole == combined_of_operand_.end() ? 0 : whole->second.size()) ==
-                        1;
+    const bool single =
+        buckets_.size() + planes_.size() + (whole == combined_of_operand_.end() ? 0 : whole->second.size()) ==
+        1;
     if (!single) out_ << "union {\n";
     if (!write_objects()) return false;
     if (!single) out_ << "}\n";

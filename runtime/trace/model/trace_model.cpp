@@ -134,7 +134,8 @@ class ModelBuilder {
             source.combination == Combination::subtract ? 1 : std::numeric_limits<std::size_t>::max();
         node.tree = add_operands(id, source.edges, bounds_.edge[id], apart);
         node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
-        node.stop_tree = add_operands(id, source.stop_edges, bounds_.stop_edge[id], node.stops_combined ? apart : 0);
+        node.stop_tree =
+            add_operands(id, source.stop_edges, bounds_.stop_edge[id], node.stops_combined ? apart : 0);
         node.stop_edge_count =
             static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge - node.edge_count;
     }

@@ -130,8 +130,8 @@ struct alignas(64) TraceNode {
     std::uint32_t endless_count = 0;   ///< of an unbounded union: the first of its edges, which `tree` lacks
     std::uint32_t stop_edge_count = 0; ///< which follow those
     Combination combination = Combination::unite; ///< of its edges
-    bool stops_combined = false;       ///< its stop edges are operands too, no terminal
-    std::uint32_t first_unrolling = 0; ///< the deepest first
+    bool stops_combined = false;                  ///< its stop edges are operands too, no terminal
+    std::uint32_t first_unrolling = 0;            ///< the deepest first
     std::uint32_t unrolling_count = 0;
     std::uint32_t run = 0;         ///< of TraceModel::runs
     std::uint32_t first_speck = 0; ///< of TraceModel::specks: of what is drawn where it is cut and faint

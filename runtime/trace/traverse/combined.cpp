@@ -1,7 +1,7 @@
 // Rays through intersections and differences. A ray is asked of each operand where it is inside, where it
 // leaves what it is in, and where it enters next. An operand is a union of parts that may overlap: it is left
-// where no part is left that holds the point (Gervautz and Traxler, "Representation and realistic rendering of
-// natural phenomena with cyclic CSG graphs", 1996, combine the same lists of intervals, whole).
+// where no part is left that holds the point (Gervautz and Traxler, "Representation and realistic rendering
+// of natural phenomena with cyclic CSG graphs", 1996, combine the same lists of intervals, whole).
 
 #include <algorithm>
 #include <cmath>
@@ -70,9 +70,7 @@ class Traversal::Operands {
 
     bool is_out_of_visits() const { return inner_.visits_ > inner_.visit_limit_; }
 
-    std::uint32_t groups() const {
-        return node_.combination == Combination::subtract ? 2 : end_ - first_;
-    }
+    std::uint32_t groups() const { return node_.combination == Combination::subtract ? 2 : end_ - first_; }
 
     bool ask(Search search, std::uint32_t group, double t, double most) {
         constexpr double rounding = 1e-15;

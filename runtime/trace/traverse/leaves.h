@@ -16,8 +16,8 @@ Traversal::Kernel<instructions, any>::meet_primitive(const Primitive& primitive,
     PrimitiveHit hit;
     if (!self.meet_asked(primitive, ray, near, hit)) return;
     const bool clears = model.clear_texels && !self.searches_solids();
-    for (int crossing = 0; clears && self.is_clear(entry.entry, entry.frame,
-                                                               model.edges[entry.entry].turns, ray(hit.t));
+    for (int crossing = 0;
+         clears && self.is_clear(entry.entry, entry.frame, model.edges[entry.entry].turns, ray(hit.t));
          ++crossing) {
         near.least = hit.t;
         if (crossing == most_crossings || !self.meet(primitive, ray, near, hit)) return;

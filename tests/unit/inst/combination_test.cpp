@@ -27,7 +27,8 @@ void expect_reads_back(const InstModel& model) {
 }
 
 TEST(Combination, one_word_holds_for_all_groups_of_an_object) {
-    const InstModel model("object a { difference: cube, sphere scale: 0.5  instance: cone  torus scale: 2 }");
+    const InstModel model(
+        "object a { difference: cube, sphere scale: 0.5  instance: cone\n torus scale: 2 }");
     expect_reads_back(model);
     EXPECT_EQ(model.object("a").combination, Combination::subtract);
     EXPECT_THAT(model.masters("a"), ElementsAre("cube", "sphere", "cone", "torus"));
@@ -90,7 +91,7 @@ TEST(Combination, is_told_apart_by_equality_and_by_merging) {
 
 TEST(Combination, is_left_whole_by_hoisting) {
     const InstModel model("canonical object a { difference: cube, sphere scale: 0.5 translate: 1, 0, 0 }\n"
-                          "object all { a  cone }");
+                          "object all { a, cone }");
     const Graph hoisted = hoist_placements(*model.graph).graph;
     EXPECT_TRUE(verify(hoisted).empty());
     const auto a = std::ranges::find(hoisted.objects, "a", &Object::name);

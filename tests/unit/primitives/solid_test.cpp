@@ -23,9 +23,8 @@ Primitive tetrahedron(std::size_t missing, bool inwards) {
 }
 
 TEST(Solid, encloses_volume_where_no_ray_gets_in_without_meeting_it) {
-    for (const PrimitiveKind kind :
-         {PrimitiveKind::sphere, PrimitiveKind::cube, PrimitiveKind::cylinder, PrimitiveKind::cone,
-          PrimitiveKind::torus, PrimitiveKind::plane})
+    for (const PrimitiveKind kind : {PrimitiveKind::sphere, PrimitiveKind::cube, PrimitiveKind::cylinder,
+                                     PrimitiveKind::cone, PrimitiveKind::torus, PrimitiveKind::plane})
         EXPECT_TRUE(encloses_volume(kind)) << name_of(kind);
     EXPECT_FALSE(encloses_volume(PrimitiveKind::triangle));
     EXPECT_TRUE(encloses_volume(tetrahedron(0, false)));

@@ -156,8 +156,8 @@ class RandomSolids {
 };
 
 /// The ray's boundaries one by one: between two of them all points are in, or all are out.
-void expect_boundaries(const Membership& membership, std::uint32_t steps, Traversal& traversal, const Ray& ray,
-                       double far, std::size_t& boundaries) {
+void expect_boundaries(const Membership& membership, std::uint32_t steps, Traversal& traversal,
+                       const Ray& ray, double far, std::size_t& boundaries) {
     constexpr int samples = 60, most = 12;
     constexpr double beside = 1e-6; // a surface is met again where the ray starts on it
     double from = 0;

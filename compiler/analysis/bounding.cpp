@@ -118,7 +118,8 @@ class Bounder {
         }
         if (object.packed) return bound_packed(id, object.packed);
         Outer& outer = outers_[id];
-        for (const Instance& instance : object.instances) {
+        if (object.combination == Combination::intersect) return bound_intersection(id);
+        for (const Instance& instance : bounding_instances(object)) {
             const Outer& part = outers_[instance.master];
             if (part.empty) continue;
             outer.box.include(transformed(instance.parent_from_child, part.box));
@@ -146,6 +147,30 @@ class Bounder {
                 outer.points[static_cast<std::size_t>(outer.point_count++)] =
                     support_point(primitive, direction);
         }
+    }
+
+    /// By the boxes of the operands that have some. Boxes apart leave a point of nothing between them.
+    void bound_intersection(ObjectId id) {
+        Outer& outer = outers_[id];
+        std::optional<Box> common;
+        for (const Instance& instance : graph_.objects[id].instances) {
+            if (unbounded_[instance.master]) continue;
+            const Box box = transformed(instance.parent_from_child, outers_[instance.master].box);
+            if (!common)
+                common = box;
+            else
+                common = Box{glm::max(common->min, box.min), glm::min(common->max, box.max)};
+        }
+        if (!common) return;
+        for (int i = 0; i < 3; ++i)
+            if (common->min[i] > common->max[i])
+                common->min[i] = common->max[i] = 0.5 * common->min[i] + 0.5 * common->max[i];
+        keep_in_range(*common);
+        outer.box = *common;
+        outer.set_ball(circumball(outer.box));
+        outer.empty = false;
+        for (const Vec3& corner : {outer.box.min, outer.box.max})
+            outer.points[static_cast<std::size_t>(outer.point_count++)] = corner;
     }
 
     void bound_packed(ObjectId id, const PackedEdges& edges) {
@@ -193,7 +218,7 @@ class Bounder {
     }
 
     void find_ball(ObjectId id) {
-        if (!wants_ball_[id]) return;
+        if (!wants_ball_[id] || graph_.objects[id].combination == Combination::intersect) return;
         meter_.add(graph_.objects[id].instances.size() + pieces_of_ball_);
         Ball ball = tight_ball(graph_, outers_, id, pieces_of_ball_, cancel_);
         ball.radius = within_range(ball.radius * (1 + 4e-12) + 4e-15 * glm::length(ball.centre));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "compiler/analysis/contraction.h"
@@ -16,7 +17,8 @@ class RunBounds;
 
 /// Outer bounds of an object's limit set, in the object's own frame.
 struct ObjectBounds {
-    Box box;   ///< every face touches the set to within 1e-10 of its size where effort allows
+    Box box;   ///< every face touches the set to within 1e-10 of its size where effort allows; a combined
+               ///< object may be smaller: bounding_instances()
     Ball ball; ///< holds the set; its radius within a few per cent of the least where effort allows
     bool unbounded = false;               ///< holds a plane; box and ball are then of the rest
     std::shared_ptr<const RunBounds> run; ///< of an object that has one: of its ranges (run_bounds.h)
@@ -24,6 +26,13 @@ struct ObjectBounds {
 
 /// The box of a primitive (exact), and its smallest ball. A plane has neither.
 ObjectBounds primitive_bounds(const Primitive& primitive);
+
+/// The instances whose union bounds the object: of a difference the first one. None of an intersection, which
+/// its box bounds.
+inline std::span<const Instance> bounding_instances(const Object& object) {
+    if (object.combination == Combination::intersect) return {};
+    return std::span(object.instances).first(object.is_combined() ? 1 : object.instances.size());
+}
 
 /// Pieces that the search for the faces of all boxes may look at, and the fewest that it takes.
 inline constexpr std::uint64_t most_pieces = 8'000'000;

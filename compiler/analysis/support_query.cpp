@@ -60,7 +60,7 @@ Support SupportSearch::run(ObjectId object, Vec3 direction, double tolerance, st
 
 void SupportSearch::expand(std::uint32_t parent) {
     const Piece from = arena_[parent];
-    const std::vector<Instance>& instances = graph_.objects[from.object].instances;
+    const std::span<const Instance> instances = bounding_instances(graph_.objects[from.object]);
     for (std::uint32_t i = 0; i < instances.size(); ++i) {
         const Instance& instance = instances[i];
         const Outer& outer = outers_[instance.master];
@@ -88,6 +88,10 @@ void SupportSearch::expand(std::uint32_t parent) {
             best_point_ = point;
         }
         if (primitive || outer.run) continue;
+        if (graph_.objects[instance.master].combination == Combination::intersect) {
+            discarded_ = std::max(discarded_, within_range(piece.offset + outer.above(piece.direction)));
+            continue;
+        }
         piece.upper = within_range(piece.offset + outer.above(piece.direction));
         if (piece.upper == largest_length) {
             // Out of range: nothing to be gained by looking closer.

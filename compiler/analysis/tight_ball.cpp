@@ -36,14 +36,16 @@ class Pieces {
     const std::vector<Ball>& balls() const { return balls_; }
 
     void add_instances(ObjectId id, const Affine& place) {
-        for (const Instance& instance : graph_.objects[id].instances) {
+        for (const Instance& instance : bounding_instances(graph_.objects[id])) {
             if (outers_[instance.master].empty) continue;
             const bool primitive = graph_.objects[instance.master].primitive.has_value();
-            const bool run = outers_[instance.master].run != nullptr; // its ball is as tight as can be
+            // The ball of a run is as tight as can be, that of an intersection as tight as is known.
+            const bool whole_ball = outers_[instance.master].run != nullptr ||
+                                    graph_.objects[instance.master].combination == Combination::intersect;
             const Affine inner = place * instance.parent_from_child;
             const Ball whole = outers_[instance.master].ball();
             add({inner(whole.centre), within_range(norm(inner.linear) * whole.radius)},
-                {run         ? Origin::Kind::point
+                {whole_ball  ? Origin::Kind::point
                  : primitive ? Origin::Kind::primitive
                              : Origin::Kind::object,
                  instance.master, inner});

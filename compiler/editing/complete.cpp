@@ -54,8 +54,9 @@ class Completer {
         if (rifs && (after == "follow" || after == "start" || after == "->" || after == "except") &&
             around != WordPlace::orbit)
             return Wanted::maps;
-        if (after == "condense" || after == "terminal" || after == "union" || after == "instance" ||
-            after == "scatter" || after == "~" || around == WordPlace::primitive)
+        if (after == "condense" || after == "terminal" || after == "union" || after == "intersection" ||
+            after == "difference" || after == "instance" || after == "scatter" || after == "~" ||
+            around == WordPlace::primitive)
             return Wanted::objects;
         if (after == "rifs" || after == "lsys" || after == "object" || after == "use" || after == "map" ||
             after == "let" || after == "inner" || after == "orbit" || after == "canonical")

@@ -93,6 +93,8 @@ constexpr Row rows[] = {
     {bit(P::orbit), {"y", "y = formula", "The new y."}},
     {bit(P::orbit), {"z", "z = formula", "The new z, if the orbit moves in space."}},
     {bit(P::inst_body), {"union", "union: OBJECTS", "Opens a group: one instance of each object."}},
+    {bit(P::inst_body), {"intersection", "intersection: SOLIDS", "Opens a group: the object is what lies in all of its parts."}},
+    {bit(P::inst_body), {"difference", "difference: SOLIDS", "Opens a group: the object is its first part less all others."}},
     {bit(P::inst_body), {"instance", "instance: OBJECT", "Opens a group, as `union` does."}},
     {bit(P::inst_body), {"terminal", "terminal: OBJECT", "Drawn in place of this object where recursion is cut off."}},
     {bit(P::inst_body), {"scatter", "scatter: OBJECTS", "Opens a group whose objects stand at many positions."}},

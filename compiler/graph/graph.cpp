@@ -37,7 +37,7 @@ std::vector<NamedEdge> named_edges(const Graph& graph, const Object& object) {
 }
 
 bool equal(const Graph& a, const Object& x, const Graph& b, const Object& y) {
-    if (x.primitive != y.primitive) return false;
+    if (x.primitive != y.primitive || x.combination != y.combination) return false;
     if (x.terminal.has_value() != y.terminal.has_value() || x.terminal_px != y.terminal_px) return false;
     return std::ranges::equal(
         named_edges(a, x), named_edges(b, y), [&](const NamedEdge& p, const NamedEdge& q) {
@@ -96,6 +96,11 @@ std::size_t instance_count(const Graph& graph) {
     for (const Object& object : graph.objects)
         count += object.instances.size();
     return count;
+}
+
+ObjectId first_combined(const Graph& graph) {
+    return static_cast<ObjectId>(std::ranges::find_if(graph.objects, &Object::is_combined) -
+                                 graph.objects.begin());
 }
 
 std::size_t edge_count(const Graph& graph) {

@@ -24,6 +24,12 @@
 // the levels on the way to them. So does an object that is taken apart: its *parts*, unending masters of
 // instances of no level, are drawn where it is drawn whole, and are never cut themselves.
 //
+// Combined objects. An object may also be the intersection of its instances, or a difference: the first one
+// less all others. An instance of a combined object is an *operand*: a solid, the union of all that is drawn
+// of its master, where that lies in space (planes are half spaces, below). Combined objects lie in no cycle,
+// and have bounds. Where levels end at one without a terminal, it combines its ending operands, unless its
+// first operand does not end.
+//
 // Tints compose along a path from the root by PathTint, parent in front. The material nearest to the
 // primitive wins.
 
@@ -60,16 +66,27 @@ struct Instance {
     double chance = 0;
 };
 
+/// The set that an object makes of its instances.
+enum class Combination : std::uint8_t {
+    unite,
+    intersect, ///< all that lies in each of them
+    subtract,  ///< the first one less all others
+};
+
 struct Object {
     std::string name;                   ///< unique, an `.inst` name such as `up`, `leaf.llr` or `tip(3)`
     std::optional<Primitive> primitive; ///< then there are no instances and no terminal
-    std::vector<Instance> instances;    ///< the union, in the order of the text
-    std::optional<Instance> terminal;   ///< drawn in place of the object where recursion is cut; its
-                                        ///< master must be ending
-    PackedEdges packed;                 ///< in place of instances; means what they would, in this order
-    double terminal_px = 0;             ///< size on screen from which down the terminal is drawn; 0: that of
-                                        ///< what is culled
+    std::vector<Instance> instances;    ///< in the order of the text
+    Combination combination = Combination::unite; ///< of the instances
+    std::optional<Instance> terminal; ///< drawn in place of the object where recursion is cut; its
+                                      ///< master must be ending
+    PackedEdges packed;               ///< in place of instances; means what they would, in this order
+    double terminal_px = 0;           ///< size on screen from which down the terminal is drawn; 0: that of
+                                      ///< what is culled
     Span span;
+
+    /// Not a union ("Combined objects").
+    bool is_combined() const { return combination != Combination::unite; }
 };
 
 /// Requires for most uses: verify() found nothing (verify.h).
@@ -88,13 +105,16 @@ struct Graph {
 /// The edges of the graph, packed ones aside.
 std::size_t instance_count(const Graph& graph);
 
+/// The first combined object; none: the number of objects.
+ObjectId first_combined(const Graph& graph);
+
 /// All edges of the graph.
 std::size_t edge_count(const Graph& graph);
 
-/// Equal structure: the same unions, names, instances (in order), transforms to the last bit, tints, levels,
-/// chances, materials, settings and root, and as many primitives. Packed edges equal the instances that they
-/// mean; they name kinds and not objects, so where a graph has some, primitives are not counted. Ids may
-/// differ, spans do not count.
+/// Equal structure: the same objects, names, combinations, instances (in order), transforms to the last bit,
+/// tints, levels, chances, materials, settings and root, and as many primitives. Packed edges equal the
+/// instances that they mean; they name kinds and not objects, so where a graph has some, primitives are not
+/// counted. Ids may differ, spans do not count.
 bool equal(const Graph& a, const Graph& b);
 
 } // namespace graftal

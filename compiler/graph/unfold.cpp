@@ -55,6 +55,7 @@ class Unfolding {
         const Object& object = graph_.objects[place.object];
         if (object.primitive) return draw_leaf(place, object.primitive);
         if (object.packed) return draw_packed(place, object.packed);
+        if (object.is_combined()) return draw_leaf(place, std::nullopt);
         if (!components_.unending[place.object] || !steps_ || place.levels < *steps_) {
             stack_.push_back({place, Draw::all});
         } else if (object.terminal) {

@@ -11,9 +11,9 @@ namespace graftal {
 
 /// One drawn thing of an unfolded graph.
 struct UnfoldedLeaf {
-    std::optional<Primitive> primitive; ///< nothing: the fitted proxy of `object`
-    ObjectId object = 0;                ///< the primitive's own, or the one whose proxy it is
-    Affine world_from_object;           ///< of the primitive, or of the object whose proxy it is
+    std::optional<Primitive> primitive; ///< nothing: `object`, if that is combined, or its fitted proxy
+    ObjectId object = 0;                ///< the primitive's own, or the one that is drawn
+    Affine world_from_object;           ///< of the primitive, or of that object
     PathTint tint;                      ///< of the whole path
     std::optional<MaterialId> material;
 };

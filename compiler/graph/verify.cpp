@@ -232,6 +232,7 @@ class Verifier {
         if (object.primitive) {
             if (!object.instances.empty()) flaw(id, "a primitive with instances");
             if (object.terminal) flaw(id, "a primitive with a terminal");
+            if (object.is_combined()) flaw(id, "a primitive that combines");
         } else if (object.instances.empty() && !object.packed) {
             flaw(id, "an empty union");
         }
@@ -245,7 +246,7 @@ class Verifier {
     }
 
     void check_packed(ObjectId id, const Object& object) {
-        if (object.primitive || !object.instances.empty() || object.terminal)
+        if (object.primitive || !object.instances.empty() || object.terminal || object.is_combined())
             flaw(id, "a run beside other parts");
         if (object.packed.size() == 0) flaw(id, "an empty run");
         for (const std::optional<MaterialId>& material : object.packed.materials)
@@ -272,6 +273,7 @@ class Verifier {
         const std::vector<bool> returns = terminals_that_return(graph_, components);
         for (ObjectId id = 0; id < graph_.objects.size(); ++id) {
             check_parts(id, components);
+            check_combined(id, components, holds_plane);
             const std::optional<Instance>& terminal = graph_.objects[id].terminal;
             if (terminal && components.unending[terminal->master])
                 flaw(id, "the terminal '{}' is unending", graph_.objects[terminal->master].name);
@@ -281,6 +283,13 @@ class Verifier {
             if (plane && components.cyclic[components.component_of[id]])
                 flaw(id, "a plane is reached through a cycle");
         }
+    }
+
+    void check_combined(ObjectId id, const Components& components, const std::vector<bool>& holds_plane) {
+        const Object& object = graph_.objects[id];
+        if (!object.is_combined() || object.instances.empty()) return;
+        if (components.cyclic[components.component_of[id]]) flaw(id, "an operand leads back to it");
+        if (holds_plane[id]) flaw(id, "its operands leave it without bounds");
     }
 
     /// Every way round a cycle takes a level.

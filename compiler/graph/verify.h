@@ -19,7 +19,8 @@ struct Flaw {
 /// primitive bears its own name and has no instances and no terminal; every other object has an instance;
 /// names are unique and `.inst` can write them (`up`, `leaf.llr`, `tip(3)`); numbers are finite, those of the
 /// settings too; tints lie in [0,1]; linear parts are not zero; terminals are ending; planes are not reached
-/// through cycles; parts have no terminals and no parts. O(graph).
+/// through cycles; parts have no terminals and no parts; combined
+/// objects have bounds, and lie in no cycle. O(graph).
 std::vector<Flaw> verify(const Graph& graph);
 
 /// Aborts, naming `stage` and the object, if verify() finds a flaw: for use after lowering and each pass.

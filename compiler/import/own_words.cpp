@@ -25,6 +25,8 @@ bool is_own_word(std::string_view word) {
                                                                   "sphere_sweep",
                                                                   "mesh",
                                                                   "union",
+                                                                  "intersection",
+                                                                  "difference",
                                                                   "instance",
                                                                   "terminal",
                                                                   "scatter",

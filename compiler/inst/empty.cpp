@@ -8,7 +8,8 @@ namespace graftal {
 
 namespace {
 
-/// A flag for each object: no instance is left once the instances of empty objects are gone, and so on.
+/// A flag for each object: no instance is left once the instances of empty objects are gone, and so on. Of an
+/// intersection one empty operand leaves nothing, of a difference the first one.
 std::vector<bool> find_empty(const Graph& graph) {
     std::vector<std::vector<ObjectId>> users(graph.objects.size());
     std::vector<std::size_t> left(graph.objects.size());
@@ -16,9 +17,15 @@ std::vector<bool> find_empty(const Graph& graph) {
     std::vector<ObjectId> open;
     for (ObjectId id = 0; id < graph.objects.size(); ++id) {
         const Object& object = graph.objects[id];
-        for (const Instance& instance : object.instances)
-            users[instance.master].push_back(id);
         left[id] = object.instances.size();
+        if (object.combination == Combination::subtract) {
+            users[object.instances.front().master].push_back(id);
+            left[id] = 1;
+        } else {
+            for (const Instance& instance : object.instances)
+                users[instance.master].push_back(id);
+        }
+        if (object.combination == Combination::intersect) left[id] = 1;
         if (left[id] > 0 || object.primitive || object.packed) continue;
         empty[id] = true;
         open.push_back(id);
@@ -27,7 +34,7 @@ std::vector<bool> find_empty(const Graph& graph) {
         const ObjectId id = open.back();
         open.pop_back();
         for (const ObjectId user : users[id])
-            if (--left[user] == 0) empty[user] = true, open.push_back(user);
+            if (left[user] > 0 && --left[user] == 0) empty[user] = true, open.push_back(user);
     }
     return empty;
 }
@@ -71,6 +78,7 @@ bool drop_empty(Graph& graph, HueTable& hues, InkTable& inks) {
             instance.master = numbers[instance.master];
         }
         keep(object.instances, kept);
+        if (object.instances.size() == 1) object.combination = Combination::unite;
         if (object.terminal && empty[object.terminal->master])
             object.terminal.reset(), object.terminal_px = 0;
         if (object.terminal) object.terminal->master = numbers[object.terminal->master];

@@ -142,7 +142,8 @@ std::optional<InstLowerer::Placement> InstLowerer::composed(const Placement& par
 }
 
 bool InstLowerer::shares_copies(const InstGroup& group) const {
-    if (is_random(group) || group.chance) return false;
+    const Combination combination = reached_[current_].definition->combination.value_or(Combination::unite);
+    if (is_random(group) || group.chance || combination != Combination::unite) return false;
     return std::ranges::none_of(group.masters, [&](const InstReference& master) {
         return chance_.may_recur(master.name) || uses_.contains(master.name);
     });

@@ -207,6 +207,7 @@ void InstLowerer::lower_object(std::size_t index) {
     report(index);
     Object& object = graph_.objects[reached_[index].id];
     object.instances = std::move(lowered.object.instances);
+    if (object.instances.size() > 1) object.combination = definition.combination.value_or(Combination::unite);
     object.terminal = std::move(lowered.object.terminal);
     object.terminal_px = lowered.object.terminal_px;
     keep_colours(reached_[index].id, std::move(lowered));

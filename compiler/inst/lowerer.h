@@ -141,7 +141,7 @@ class InstLowerer {
     /// Nothing, after an error, if the map leaves the range of numbers.
     std::optional<Placement> composed(const Placement& parent, const Placement& child, Span span);
     /// Whether an object of its own contains the copies of the inner repeats. It does not where it would
-    /// count as a level of recursion, or where all copies differ.
+    /// count as a level of recursion, where all copies differ, or where each is an operand.
     bool shares_copies(const InstGroup& group) const;
     /// `town.repeat`, `town.repeat2` and so on, for such an object of the one being lowered.
     std::string free_repeat_name();

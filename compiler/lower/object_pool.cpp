@@ -46,7 +46,7 @@ bool alike(const Instance& a, const Instance& b) {
 
 bool alike(const Object& a, const Object& b) {
     const auto same = [](const Instance& x, const Instance& y) { return alike(x, y); };
-    return std::ranges::equal(a.instances, b.instances, same) &&
+    return a.combination == b.combination && std::ranges::equal(a.instances, b.instances, same) &&
            a.terminal.has_value() == b.terminal.has_value() &&
            (!a.terminal || alike(*a.terminal, *b.terminal));
 }

@@ -30,7 +30,8 @@ bool share_placement(const Instance& a, const Instance& b) {
 }
 
 bool can_give(const Object& object) {
-    if (object.primitive || object.packed) return false;
+    // What operands make together is bounded otherwise than what is united (Renumbering::united).
+    if (object.primitive || object.packed || object.is_combined()) return false;
     const Instance& first = object.instances.front();
     if (is_singular(first.parent_from_child)) return false;
     for (const Instance& instance : object.instances)

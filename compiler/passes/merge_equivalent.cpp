@@ -47,16 +47,24 @@ double chance_share(double chance, double sum) {
 }
 
 /// `terminal_px`: nothing but of a terminal; `chance`: relative to all of the object.
-Placement placement_of(Instance instance, std::optional<double> terminal_px, double chance) {
+Placement placement_of(Instance instance, std::optional<double> terminal_px, double chance,
+                       std::uint64_t role) {
     instance.chance = chance;
     Placement placement = attribute_words(instance);
     placement.put(std::uint64_t{terminal_px.has_value()});
     placement.put(terminal_px.value_or(0));
+    placement.put(role);
     return placement;
 }
 
+/// The part that an instance takes in the combination of its object.
+std::uint64_t role_of(const Object& object, const Instance& instance) {
+    const bool first = object.combination == Combination::subtract && &instance == &object.instances.front();
+    return 2 * static_cast<std::uint64_t>(object.combination) + (first ? 1 : 0);
+}
+
 /// Placement of the shape alone.
-Placement place_of(const Instance& instance) {
+Placement place_of(const Instance& instance, std::uint64_t role) {
     const Affine& map = instance.parent_from_child;
     Placement placement;
     for (int column = 0; column < 3; ++column)
@@ -64,6 +72,7 @@ Placement place_of(const Instance& instance) {
             placement.put(map.linear[column][row]);
     for (int row = 0; row < 3; ++row)
         placement.put(map.translation[row]);
+    placement.put(role);
     return placement;
 }
 
@@ -115,14 +124,16 @@ Edges edges_of(const Graph& graph, Alike alike) {
         const Object& object = graph.objects[user];
         const double chances = chance_sum(object);
         for (const Instance& instance : object.instances) {
-            edges.labels_of[user].push_back(labels.of(
-                alike == Alike::in_shape
-                    ? place_of(instance)
-                    : placement_of(instance, std::nullopt, chance_share(instance.chance, chances))));
+            edges.labels_of[user].push_back(
+                labels.of(alike == Alike::in_shape
+                              ? place_of(instance, role_of(object, instance))
+                              : placement_of(instance, std::nullopt, chance_share(instance.chance, chances),
+                                             role_of(object, instance))));
             ++edges.first_arrival[instance.master + 1];
         }
         if (object.terminal && alike == Alike::in_all) {
-            edges.labels_of[user].push_back(labels.of(placement_of(*object.terminal, object.terminal_px, 0)));
+            edges.labels_of[user].push_back(
+                labels.of(placement_of(*object.terminal, object.terminal_px, 0, 0)));
             ++edges.first_arrival[object.terminal->master + 1];
         }
     }

@@ -80,13 +80,13 @@ class GraphShape {
 
     bool alike(ObjectId a, ObjectId b) const {
         const Object &x = graph_.objects[a], &y = graph_.objects[b];
-        return x.primitive == y.primitive && x.packed.run == y.packed.run && x.terminal_px == y.terminal_px &&
-               components_.unending[a] == components_.unending[b] &&
+        return x.primitive == y.primitive && x.combination == y.combination && x.packed.run == y.packed.run &&
+               x.terminal_px == y.terminal_px && components_.unending[a] == components_.unending[b] &&
                bounds_[a].unbounded == bounds_[b].unbounded;
     }
 
-    /// True for packed edges, which are no instances.
-    bool fixed(ObjectId id) const { return bool(graph_.objects[id].packed); }
+    /// True for packed edges, which are no instances, and for operands, which take parts.
+    bool fixed(ObjectId id) const { return graph_.objects[id].packed || graph_.objects[id].is_combined(); }
     double radius(ObjectId id) const { return std::max(bounds_[id].ball.radius, 0.0); }
     const Affine* proxy(ObjectId id) const {
         return components_.unending[id] && !graph_.objects[id].terminal ? &proxies_[id] : nullptr;
@@ -151,8 +151,8 @@ std::vector<ObjectId> candidates(const Graph& graph, const Components& component
             instances, [&](const Instance& instance) { return components.unending[instance.master]; });
         const bool whole = std::ranges::none_of(
             instances, [&](const Instance& instance) { return is_part(instance, components); });
-        if (whole && !is_part_of_another[id] && instances.size() % 2 == 0 &&
-            static_cast<std::size_t>(unending) >= least_instances)
+        if (whole && !graph.objects[id].is_combined() && !is_part_of_another[id] &&
+            instances.size() % 2 == 0 && static_cast<std::size_t>(unending) >= least_instances)
             all.push_back(id);
     }
     return all;

@@ -20,6 +20,16 @@ struct Body {
     std::variant<Primitive, Mesh> shape;
 };
 
+inline constexpr std::uint32_t no_operand = UINT32_MAX;
+
+/// An intersection or a difference at its place. Its operands hold groups, and other combined parts.
+struct CombinedPart {
+    Combination combination = Combination::subtract;
+    std::uint32_t holder = no_operand; ///< the operand that it lies in; none: it is drawn by itself
+    std::uint32_t first_operand = 0;   ///< the numbers of its operands follow each other
+    std::uint32_t operand_count = 0;
+};
+
 /// Placements that share a texture: a palette, one tint in front of it, and a finish (the material's rgb is
 /// already in the palette). Where the palette has one colour the tint is already in it too. If the material
 /// has a picture or a pattern it stands in the palette's place, behind the tint.
@@ -27,7 +37,8 @@ struct PlacementGroup {
     std::uint32_t palette = 0;
     PathTint tint;
     Material material;
-    double pattern_size = 1; ///< where the material has a pattern
+    double pattern_size = 1;            ///< where the material has a pattern
+    std::uint32_t operand = no_operand; ///< that the placements are parts of
     std::vector<Placement> placements;
     std::vector<PackedPlacements> packed; ///< more placements
 };
@@ -44,6 +55,7 @@ struct Cut : DrawnExtent {
     std::vector<Body> bodies;
     std::vector<Palette> palettes;
     std::vector<PlacementGroup> groups;
+    std::vector<CombinedPart> combined; ///< before those that they hold
     double error_px = 0; ///< reached: largest projected size of a culled part; 0 if none was culled
     double error_asked_px = 0;
     double tessellation_px = 0; ///< largest distance between a curved surface and its mesh

@@ -78,6 +78,8 @@ struct PrimitiveHit {
     Vec3 normal{0, 1, 0}; ///< in the primitive's frame, outwards (of the triangle: +z, of the plane: +y), of
                           ///< unit length
     std::uint64_t steps = 0; ///< among the parts of the primitive, whether or not any was met
+    int facet_side =
+        0; ///< of a mesh, whose normals may be smooth: 1 where the ray leaves by the facet, else -1
 };
 
 /// The range of how many numbers make a primitive of the kind; `most` is 0 for kinds without numbers.

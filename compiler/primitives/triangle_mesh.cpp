@@ -229,6 +229,7 @@ bool intersect_within(const Primitive& primitive, const Ray& ray, const RayRange
     if (!form.tree.meet(ray, range, met, number, hit.steps, most_steps)) return false;
     hit.t = met.t;
     hit.normal = normal_at(form, number, met.share);
+    hit.facet_side = glm::dot(area_normal(form.tree.triangles()[number]), ray.direction) > 0 ? 1 : -1;
     return true;
 }
 

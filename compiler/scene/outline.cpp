@@ -76,7 +76,8 @@ class Outline {
         const Box& box = bounds_[object].box;
         if (box.empty()) return; // nothing but planes
         Piece piece{world_from_object, object, longest_axis(box, world_from_object), box};
-        if (graph_.objects[object].primitive) piece.size = 0;
+        if (graph_.objects[object].primitive || graph_.objects[object].combination == Combination::intersect)
+            piece.size = 0;
         if (graph_.objects[object].packed) piece.level = bounds_[object].run->level_count() - 1;
         pieces_.push_back(piece);
     }
@@ -117,7 +118,7 @@ class Outline {
         if (object.packed) return unfold_last_range();
         if (piece.size <= small_ || pieces_.size() + object.instances.size() > most_pieces) return false;
         pieces_.pop_back();
-        for (const Instance& instance : object.instances)
+        for (const Instance& instance : bounding_instances(object))
             add(instance.master, piece.world_from_object * instance.parent_from_child);
         return true;
     }

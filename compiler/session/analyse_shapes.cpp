@@ -27,6 +27,7 @@ Graph folded(const Graph& graph, const ShapeClasses& classes) {
         Object object;
         object.name = source.name;
         object.primitive = source.primitive;
+        object.combination = source.combination;
         object.packed.run = source.packed.run;
         for (const Instance& instance : source.instances)
             object.instances.push_back({classes.class_of[instance.master], instance.parent_from_child});

@@ -55,9 +55,10 @@ class Bounder {
         for (const CutNode& node : cut.nodes) {
             Object object;
             object.primitive = node.primitive;
-            for (const std::vector<CutEdge>* edges : {&node.edges, &node.stop_edges})
-                for (const CutEdge& edge : *edges)
-                    object.instances.push_back(instance_of(edge));
+            if (!node.is_combined())
+                for (const std::vector<CutEdge>* edges : {&node.edges, &node.stop_edges})
+                    for (const CutEdge& edge : *edges)
+                        object.instances.push_back(instance_of(edge));
             graph_.objects.push_back(std::move(object));
         }
         for (const PrimitiveKind kind : {PrimitiveKind::sphere, PrimitiveKind::cube}) {
@@ -65,6 +66,8 @@ class Bounder {
             primitive.primitive = kind;
             graph_.objects.push_back(std::move(primitive));
         }
+        for (NodeId id = 0; id < cut.nodes.size(); ++id)
+            if (cut.nodes[id].is_combined()) add_combined(id);
         for (NodeId id = 0; id < cut.nodes.size(); ++id) {
             if (!cut.nodes[id].cell) continue;
             const Box& box = cut.nodes[id].cell->box; // a cube stands for what the cell holds
@@ -84,7 +87,7 @@ class Bounder {
     }
 
     DrawnBounds run() {
-        const std::size_t nodes = cut_.nodes.size();
+        const std::size_t nodes = cut_.nodes.size(), first = graph_.objects.size();
         for (NodeId id = 0; id < nodes; ++id)
             for (const std::vector<CutEdge>* edges : {&cut_.nodes[id].edges, &cut_.nodes[id].stop_edges})
                 for (const CutEdge& edge : *edges)
@@ -93,7 +96,7 @@ class Bounder {
         DrawnBounds result;
         WorkMeter meter(control_, "bounding", edges_a_look);
         result.pieces = pieces_;
-        std::size_t next = nodes + 2;
+        std::size_t next = first;
         for (const CutNode& node : cut_.nodes) {
             result.node.push_back(boxes_[result.node.size()]);
             for (const bool stop : {false, true}) {
@@ -136,6 +139,22 @@ class Bounder {
                 boxes[id].include(transformed(instances[i].parent_from_child, boxes[instances[i].master]));
         }
         return boxes;
+    }
+
+    /// A combined node is drawn by its edges or by its stop edges. Each are an object of their own, and the
+    /// node holds both, beside its terminal or proxy.
+    void add_combined(NodeId id) {
+        const CutNode& node = cut_.nodes[id];
+        for (const bool stop : {false, true}) {
+            Object object;
+            if (!(stop && node.terminal)) object.combination = node.combination;
+            for (const CutEdge& edge : stop ? node.stop_edges : node.edges)
+                object.instances.push_back(instance_of(edge));
+            if (object.instances.empty()) continue;
+            Instance whole;
+            whole.master = graph_.add(std::move(object));
+            graph_.objects[id].instances.push_back(whole);
+        }
     }
 
     bool needs_object(const CutEdge& edge) const {

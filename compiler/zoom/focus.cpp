@@ -60,7 +60,7 @@ std::vector<bool> endless_objects(const Graph& graph) {
     std::vector<std::size_t> ways(count, 0); // into objects that are not known to end
     for (ObjectId id = 0; id < count; ++id)
         for (const Instance& instance : graph.objects[id].instances)
-            if (!is_singular(instance.parent_from_child)) {
+            if (!graph.objects[id].is_combined() && !is_singular(instance.parent_from_child)) {
                 users[instance.master].push_back(id);
                 ++ways[id];
             }
@@ -91,6 +91,7 @@ class PointWalk {
 
     /// One step; false at the end of the path.
     bool step() {
+        if (graph_.objects[object_].is_combined()) return false; // its parts are not drawn by themselves
         std::optional<std::uint32_t> best;
         double best_ratio = nearest_ ? std::numeric_limits<double>::infinity() : 1 + 1e-6;
         const std::vector<Instance>& instances = graph_.objects[object_].instances;

@@ -96,7 +96,7 @@ bool Neighbourhood::in_reach(const NearPiece& piece, Vec3 focus, double reach) c
 
 bool Neighbourhood::divisible(const NearPiece& piece) const {
     const Object& object = graph_.objects[piece.object];
-    if (object.primitive || object.packed) return false;
+    if (object.primitive || object.packed || object.is_combined()) return false;
     // Where no level is left, the object is drawn by what ends it.
     return !steps_ || !components_.unending[piece.object] || piece.levels < *steps_;
 }

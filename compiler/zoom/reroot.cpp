@@ -68,6 +68,9 @@ class Rerooter {
             if (model_.at->endless() && !request_.zoom)
                 return refuse("an endless address is a point, and a point has no frame of its own",
                               "give the repetition a count, or give a magnification with --zoom F");
+            for (const std::vector<GraphStep>* steps : {&model_.at->steps, &model_.at->cycle})
+                for (const GraphStep& step : *steps)
+                    if (model_.graph.objects[step.object].is_combined()) return refuse_combined(step);
             focus_ = focus_of_path(model_.graph, model_.bounds, *model_.at);
         } else if (look_at) {
             focus_ = focus_at_point(model_.graph, model_.bounds, *look_at);
@@ -281,6 +284,17 @@ class Rerooter {
             "choose an address that avoids it");
     }
 
+    bool refuse_combined(const GraphStep& step) {
+        const Object& object = model_.graph.objects[step.object];
+        return refuse(
+            fmt::format("the address leads into '{}', whose parts are not drawn by themselves: it is "
+                        "their {}",
+                        object.name,
+                        object.combination == Combination::subtract ? "difference" : "intersection"),
+            fmt::format("let the address end at '{}', or draw the part as an object of its own",
+                        object.name));
+    }
+
     bool refuse_crowd() {
         return refuse(around_.looked_too_often()
                           ? fmt::format("more than {} parts may reach this place", Neighbourhood::most_looks)
@@ -337,8 +351,9 @@ class Rerooter {
         std::vector<std::uint32_t> ways;
         for (const NearPiece& piece : pieces) {
             const ObjectBounds& of_piece = model_.bounds[piece.object];
-            const bool primitive = graph.objects[piece.object].primitive.has_value() && !of_piece.unbounded;
-            if (primitive && stretch * around_.radius(piece) > largest_primitive * reach_) {
+            const Object& object = graph.objects[piece.object];
+            const bool whole = (object.primitive || object.is_combined()) && !of_piece.unbounded;
+            if (whole && stretch * around_.radius(piece) > largest_primitive * reach_) {
                 ++too_large;
                 continue;
             }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/graph/refuse_combined.h"
 #include "compiler/session/stages.h"
 #include "compiler/support/check.h"
 
@@ -63,6 +64,8 @@ class Exporter {
         const std::shared_ptr<const PreparedCut> prepared = session_.prepared(stages, compilation);
         if (!prepared) return attempt;
         const Graph& graph = viewed->model->graph;
+        if (refuse_combined(graph, fmt::format("a {} file", format_.extension), compilation.diagnostics))
+            return attempt;
         const Span root = attempt.root = graph.objects[graph.root].span;
         std::optional<UnfoldedScene> scene = build_scene(
             *prepared, viewed->view, resolved(stages.detail, *viewed), format_.meshes, root,

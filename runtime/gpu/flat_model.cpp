@@ -190,6 +190,7 @@ std::string lack(const FlatRequest& request) {
     if (request.textures.of_ground) return "a picture on the ground";
     for (const CutNode& node : request.prepared.cut.nodes) {
         if (node.sealed) return "a singular map";
+        if (node.is_combined()) return "an intersection or a difference";
     }
     if (request.detail.error_px > SelfShadows::lit_as_px)
         return "parts culled that are larger than half a pixel";

@@ -11,6 +11,7 @@
 
 #include "compiler/chaos/chaos_game.h"
 #include "compiler/chaos/ordinary_ifs.h"
+#include "compiler/graph/refuse_combined.h"
 #include "compiler/support/number.h"
 #include "runtime/points/target_picture.h"
 
@@ -245,6 +246,7 @@ std::optional<Collage> measure_collage(Session& session, const CollageOptions& o
     if (!viewed) return std::nullopt;
     Diagnostics& diagnostics = compilation.diagnostics;
     const AnalysedModel& model = *viewed->model;
+    if (refuse_combined(model.graph, "a collage", diagnostics)) return std::nullopt;
     const std::optional<OrdinaryIfs> ifs = system_of(model, diagnostics);
     const std::optional<PlaneNorm> norm = ifs ? norm_of(*ifs, diagnostics) : std::nullopt;
     if (!norm) return std::nullopt;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "compiler/chaos/unroll.h"
+#include "compiler/graph/refuse_combined.h"
 #include "compiler/session/frame_model.h"
 #include "compiler/support/check.h"
 #include "runtime/image/develop.h"
@@ -45,6 +46,7 @@ void note_planes(const Graph& graph, Diagnostics& diagnostics) {
 
 std::optional<ChaosGame> game_of(const AnalysedModel& model, std::optional<unsigned> steps,
                                  Diagnostics& diagnostics) {
+    if (refuse_combined(model.graph, "a cloud of random points", diagnostics)) return std::nullopt;
     const double rate = model.contraction.verdict == Verdict::proved ? model.contraction.certificate.rate : 0;
     std::optional<ChaosGame> game;
     if (steps && model.components.unending[model.graph.root]) {

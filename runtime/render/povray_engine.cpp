@@ -65,10 +65,14 @@ Status finish_picture(const PovrayJob& job, const RenderOptions& options, const 
     return write_image(options.output, image, options.format, options.metadata);
 }
 
-/// Number of finite objects that POV-Ray must count: every placement except those of planes.
+/// Number of finite objects that POV-Ray must count: every placement except those of planes and of operands,
+/// and what the operands make.
 std::uint64_t finite_objects(const Cut& cut) {
     std::uint64_t count = 0;
+    for (const CombinedPart& part : cut.combined)
+        count += part.holder == no_operand;
     for (const PlacementGroup& group : cut.groups) {
+        if (group.operand != no_operand) continue;
         for (const Placement& placement : group.placements) {
             const auto* primitive = std::get_if<Primitive>(&cut.bodies[placement.body].shape);
             count += !primitive || *primitive != PrimitiveKind::plane;

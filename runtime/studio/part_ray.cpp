@@ -105,7 +105,8 @@ class PartRay {
         const Object& object = graph_.objects[place.object];
         if (object.primitive) return meet(number, *object.primitive, enters);
         const bool ended = steps_ && components_.unending[place.object] && place.levels >= *steps_;
-        if (object.packed || ended || is_small(place, enters)) return take(number, enters, -ray_.direction);
+        if (object.packed || object.is_combined() || ended || is_small(place, enters))
+            return take(number, enters, -ray_.direction);
         for (std::uint32_t i = 0; i < object.instances.size(); ++i) {
             const Instance& instance = object.instances[i];
             const std::uint32_t levels = place.levels + levels_of(instance, components_);

@@ -28,13 +28,15 @@ bool is_digit(char c) {
 /// Words that begin a line where lines are written one after the other: `scale 1/2  translate <0, 1, 0>`.
 bool begins_line(std::string_view word) {
     static constexpr auto words = std::to_array<std::string_view>(
-        {"ambient", "angle",     "around",   "axiom",   "background", "below",    "by",        "camera",
-         "chance",  "codes",     "color",    "colors",  "condense",   "count",    "decompose", "diffuse",
-         "follow",  "ground",    "height",   "horizon", "inner",      "instance", "interpret", "lean",
-         "let",     "light",     "location", "look_at", "map",        "material", "matrix",    "over",
-         "rotate",  "roughness", "scale",    "scatter", "seed",       "shear",    "size",      "specular",
-         "start",   "step",      "steps",    "sun",     "terminal",   "texture",  "tint",      "translate",
-         "tropism", "turn",      "union",    "up",      "use",        "width",    "zenith"});
+        {"ambient",   "angle",    "around",     "axiom",        "background", "below",    "by",
+         "camera",    "chance",   "codes",      "color",        "colors",     "condense", "count",
+         "decompose", "diffuse",  "difference", "follow",       "ground",     "height",   "horizon",
+         "inner",     "instance", "interpret",  "intersection", "lean",       "let",      "light",
+         "location",  "look_at",  "map",        "material",     "matrix",     "over",     "rotate",
+         "roughness", "scale",    "scatter",    "seed",         "shear",      "size",     "specular",
+         "start",     "step",     "steps",      "sun",          "terminal",   "texture",  "tint",
+         "translate", "tropism",  "turn",       "union",        "up",         "use",      "width",
+         "zenith"});
     return std::binary_search(words.begin(), words.end(), word);
 }
 

@@ -54,6 +54,7 @@ class Builder {
             CutNode node;
             node.name = graph_.objects[whole_of[id]].name;
             node.primitive = object.primitive;
+            node.combination = object.combination;
             node.unending = components_.unending[id];
             node.unbounded = bounds.unbounded;
             node.terminal_px = object.terminal_px;
@@ -74,7 +75,8 @@ class Builder {
                 if (!is_plane_on_a_line(*object.terminal))
                     node.stop_edges.push_back(edge(*object.terminal, node, id));
                 node.terminal = true;
-            } else if (node.unending && !part) {
+            } else if (node.unending && !part &&
+                       (node.combination != Combination::subtract || ends(node.edges.front()))) {
                 for (const CutEdge& candidate : node.edges)
                     if (ends(candidate)) node.stop_edges.push_back(candidate);
             }

@@ -33,6 +33,7 @@ struct EdgeCell;
 struct CutNode {
     std::string name;
     std::optional<Primitive> primitive;
+    Combination combination = Combination::unite; ///< of the edges, and of the stop edges but for a terminal
     std::vector<CutEdge> edges;
     std::vector<CutEdge> stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
     std::shared_ptr<const EdgeCell> cell; ///< in place of edges: see for_each_edge() (edge_cell.h)
@@ -51,6 +52,8 @@ struct CutNode {
     MeanColour mean;        ///< its limit's, from afar
     std::optional<MeanColour> lit;    ///< its proxy's colour in place of `mean`: see set_lit_colours()
     std::optional<MaterialId> finish; ///< the most visible one in its limit; none: that it inherits
+
+    bool is_combined() const { return combination != Combination::unite; }
 };
 
 /// A graph after the passes for detail, with what unfolding it asks for at every edge.

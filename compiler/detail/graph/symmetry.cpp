@@ -25,13 +25,16 @@ class CutShape {
 
     bool alike(NodeId a, NodeId b) const {
         const CutNode &x = cut_.nodes[a], &y = cut_.nodes[b];
-        return x.primitive == y.primitive && x.cell == y.cell && x.unending == y.unending &&
-               x.sealed == y.sealed && x.unbounded == y.unbounded && x.cullable == y.cullable &&
-               x.terminal_px == y.terminal_px;
+        return x.primitive == y.primitive && x.combination == y.combination && x.cell == y.cell &&
+               x.unending == y.unending && x.sealed == y.sealed && x.unbounded == y.unbounded &&
+               x.cullable == y.cullable && x.terminal_px == y.terminal_px;
     }
 
-    /// True for a cell, whose parts are no edges.
-    bool fixed(NodeId id) const { return cut_.nodes[id].sealed || cut_.nodes[id].cell; }
+    /// True for a cell, whose parts are no edges, and for operands, which take parts.
+    bool fixed(NodeId id) const {
+        const CutNode& node = cut_.nodes[id];
+        return node.sealed || node.cell || node.is_combined();
+    }
     double radius(NodeId id) const { return cut_.nodes[id].ball.radius; }
     const Affine* proxy(NodeId id) const {
         const CutNode& node = cut_.nodes[id];

@@ -98,8 +98,8 @@ class Fitter {
 
     bool fittable(NodeId id) const {
         const CutNode& node = cut_.nodes[id];
-        return !node.primitive && !node.edges.empty() && node.edges.size() <= most_edges &&
-               node.ball.radius > 0;
+        return !node.primitive && !node.is_combined() && !node.edges.empty() &&
+               node.edges.size() <= most_edges && node.ball.radius > 0;
     }
 
     /// Roots whose proxies may be drawn, and those that these are measured by. A crowd of thousands of small

@@ -87,7 +87,7 @@ void ShadowMeasurer::unfold(NodeId root, std::size_t most, bool ended) {
             parts_[at] = part;
             bodies += bodies_of(part);
             // The earlier of two that are alike first.
-            if (!cut_.nodes[part.node].edges.empty())
+            if (!cut_.nodes[part.node].edges.empty() && !cut_.nodes[part.node].is_combined())
                 largest.push(
                     {part.scale * cut_.nodes[part.node].ball.radius, -static_cast<std::int64_t>(at)});
         }

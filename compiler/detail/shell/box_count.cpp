@@ -49,6 +49,7 @@ BoxCount count_boxes(const CutGraph& cut, NodeId node, std::uint32_t steps, std:
     BoxCount count;
     const CutNode& whole = cut.nodes[node];
     if (whole.unbounded || !(whole.ball.radius > 0)) return count;
+    if (std::ranges::any_of(cut.nodes, &CutNode::is_combined)) return count; // its parts are not all of it
     PointSystem system(cut, most_boxes);
     double side = 2 * whole.ball.radius / first_boxes_across;
     for (int row = 0; row < most_rows && system.all_work() < most_work; ++row, side /= 2) {

@@ -50,6 +50,8 @@ class DotWriter {
         out_ += fmt::format("{}n{} [label={}", indent, id, quoted(object.name));
         if (object.primitive) out_ += ", shape=box";
         if (object.packed) out_ += fmt::format(", shape=box3d, xlabel=\"{} parts\"", object.packed.size());
+        if (object.combination == Combination::intersect) out_ += ", xlabel=\"intersection\"";
+        if (object.combination == Combination::subtract) out_ += ", xlabel=\"difference\"";
         if (id == graph_.root) out_ += ", peripheries=2";
         out_ += "];\n";
     }

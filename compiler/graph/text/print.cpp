@@ -188,7 +188,7 @@ class Printer {
         out_ += id == graph_.root ? "object " : "canonical object ";
         out_ += object.name + " {\n";
         for (std::size_t i = 0; i < object.instances.size();)
-            i = print_group(object.instances, i);
+            i = print_group(object, i);
         for (const PackedEdge& edge : object.packed)
             print_packed(edge);
         if (object.terminal) {
@@ -208,11 +208,17 @@ class Printer {
 
     /// Writes the instances from `first` on that are placed alike as one statement, as Hart's texts do.
     /// Returns where the next group begins.
-    std::size_t print_group(const std::vector<Instance>& instances, std::size_t first) {
+    std::size_t print_group(const Object& object, std::size_t first) {
+        const std::vector<Instance>& instances = object.instances;
         std::size_t end = first + 1;
         while (end < instances.size() && equal_attributes(graph_, instances[first], graph_, instances[end]))
             ++end;
-        out_ += end == first + 1 ? "  instance: " : "  union: ";
+        if (object.combination == Combination::intersect)
+            out_ += "  intersection: ";
+        else if (object.combination == Combination::subtract)
+            out_ += "  difference: ";
+        else
+            out_ += end == first + 1 ? "  instance: " : "  union: ";
         for (std::size_t i = first; i < end; ++i) {
             if (i > first) out_ += ", ";
             out_ += master_name(instances[i]);

@@ -66,6 +66,10 @@ class RifsPrinter {
             why = "nothing in it contains itself";
             return std::nullopt;
         }
+        if (const ObjectId id = first_combined(graph_); id < graph_.objects.size()) {
+            why = fmt::format("'{}' is no union of its parts", graph_.objects[id].name);
+            return std::nullopt;
+        }
         for (ObjectId id = 0; id < graph_.objects.size(); ++id)
             if (components_.unending[id]) objects_.push_back(id);
         out_ = print_scenery(graph_);

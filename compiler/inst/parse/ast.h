@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/graph/graph.h"
 #include "compiler/inst/parse/scatter.h"
 #include "compiler/syntax/expression.h"
 #include "compiler/syntax/names.h"
@@ -73,8 +74,8 @@ struct InstRepeat {
     Span span;
 };
 
-/// `union:`, `instance:`, a bare name, `terminal:` or `scatter:`, and the lines after it, which hold for each
-/// of its masters, the first line applied first.
+/// `union:`, `intersection:`, `difference:`, `instance:`, a bare name, `terminal:` or `scatter:`, and the
+/// lines after it, which hold for each of its masters, the first line applied first.
 struct InstGroup {
     bool terminal = false;
     std::optional<Expression> below; ///< of a terminal: the size from which down it is drawn
@@ -112,6 +113,8 @@ struct InstDefinition {
     std::vector<InstParameter> parameters;
     std::optional<Expression> weight; ///< among the definitions of the same name and parameters
     std::vector<InstGroup> groups;
+    std::optional<Combination> combination; ///< of the groups, where one of them names it
+    Span combination_span;
     std::vector<std::shared_ptr<const InstTest>> tests; ///< of all its conditions, those without groups too
     std::size_t size = 0;                               ///< tokens: what enumerating it once costs
     Span span;                                          ///< of the name with its parameters

@@ -82,8 +82,7 @@ class BodyParser {
         if (at_ink(stream_)) return parse_ink();
         if (at_when()) return parse_when();
         if (at_nothing()) return parse_nothing();
-        if (stream_.at("union") || stream_.at("instance") || stream_.at("terminal")) return parse_group();
-        if (at_scatter()) return parse_group();
+        if (at_group()) return parse_group();
         if (in_scatter() && at_scatter_line(stream_)) return parse_line_of_scatter();
         if (stream_.at_name()) return parse_bare_group();
         const bool open = stream_.at("{"), number = stream_.peek().kind == TokenKind::number;
@@ -108,6 +107,13 @@ class BodyParser {
     bool at_scatter() const {
         const Token& after = stream_.peek(1);
         return stream_.at("scatter") &&
+               (after.is(":") || (after.kind == TokenKind::name && !after.first_on_line));
+    }
+
+    /// `difference: cube` or `difference cube`, and not an object of that name.
+    bool at_combination() const {
+        const Token& after = stream_.peek(1);
+        return (stream_.at("intersection") || stream_.at("difference")) &&
                (after.is(":") || (after.kind == TokenKind::name && !after.first_on_line));
     }
 
@@ -160,7 +166,8 @@ class BodyParser {
     }
 
     bool at_group() const {
-        return stream_.at("union") || stream_.at("instance") || stream_.at("terminal") || at_scatter();
+        return stream_.at("union") || stream_.at("instance") || stream_.at("terminal") || at_scatter() ||
+               at_combination();
     }
 
     bool parse_hue() {
@@ -253,7 +260,28 @@ class BodyParser {
         lost_group_ = !parse_masters(group, keyword.text);
         if (lost_group_) return false;
         group.span = stream_.span_from(keyword.span);
+        take_combination(keyword);
         return group.terminal ? add_terminal(std::move(group)) : add(std::move(group));
+    }
+
+    /// One word says how all groups of an object combine; `instance` and bare names leave it open.
+    void take_combination(const Token& keyword) {
+        std::optional<Combination> named;
+        if (keyword.is("union")) named = Combination::unite;
+        if (keyword.is("intersection")) named = Combination::intersect;
+        if (keyword.is("difference")) named = Combination::subtract;
+        if (!named) return;
+        if (!definition_.combination) {
+            definition_.combination = named;
+            definition_.combination_span = keyword.span;
+        } else if (*definition_.combination != *named) {
+            diagnostics_
+                .error(keyword.span,
+                       fmt::format("object '{}' combines its parts in two ways", definition_.name))
+                .with_note(definition_.combination_span, "the first is here")
+                .with_hint(fmt::format("define an object for the {} of its own, and name that object here",
+                                       keyword.text));
+        }
     }
 
     /// `triangle` alone. Other names are more likely a slip: a misspelt keyword or a missing comma.

@@ -20,8 +20,9 @@ constexpr std::size_t max_parameters = 100;
 /// The words that begin lines, apart from those that all languages share.
 std::span<const std::string_view> line_words() {
     static const std::vector<std::string_view> words = [] {
-        std::vector<std::string_view> own = {"union",  "instance", "terminal", "scatter", "below",  "object",
-                                             "repeat", "hue",      "ink",      "when",    "nothing"};
+        std::vector<std::string_view> own = {"union",   "intersection", "difference", "instance", "terminal",
+                                             "scatter", "below",        "object",     "repeat",   "hue",
+                                             "ink",     "when",         "nothing"};
         own.insert(own.end(), scatter_keywords().begin(), scatter_keywords().end());
         return own;
     }();

@@ -70,8 +70,8 @@ bool parse_repeat_block(TokenStream& stream, InstRepeat& repeat) {
 const std::vector<std::string>& body_keywords() {
     static const std::vector<std::string> keywords = [] {
         std::vector<std::string> words(transform_keywords.begin(), transform_keywords.end());
-        for (const char* word : {"union", "instance", "terminal", "scatter", "tint", "material", "chance",
-                                 "below", "hue", "ink"})
+        for (const char* word : {"union", "intersection", "difference", "instance", "terminal", "scatter",
+                                 "tint", "material", "chance", "below", "hue", "ink"})
             words.emplace_back(word);
         words.insert(words.end(), scatter_keywords().begin(), scatter_keywords().end());
         return words;

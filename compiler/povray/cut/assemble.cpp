@@ -63,6 +63,7 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
     for (const PlacedRuns::Range& range : pieces->runs.ranges())
         grouping.add(range);
     Cut result = std::move(grouping).take();
+    result.combined = std::move(pieces->combined);
     result.error_px = culled_detail;
     result.tessellation_px = tessellation_px;
     result.finest = std::min(pieces->finest, finest_of_runs);

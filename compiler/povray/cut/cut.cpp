@@ -46,8 +46,9 @@ class Cutter {
   public:
     Cutter(const Graph& graph, const PreparedCut& prepared, const View& view, const DetailOptions& options,
            const CutOptions& cut_options, Diagnostics& diagnostics, const Control& control)
-        : graph_(graph), view_(view), options_(options), cut_options_(cut_options), diagnostics_(diagnostics),
-          prepared_(prepared), cut_(prepared_.cut), symmetry_(prepared_.symmetry),
+        : graph_(graph), view_(view), options_(options), cut_options_(cut_options),
+          flattens_(cut_options.flatten || first_combined(graph) < graph.objects.size()),
+          diagnostics_(diagnostics), prepared_(prepared), cut_(prepared_.cut), symmetry_(prepared_.symmetry),
           meter_(control, "cut", pieces_a_look) {}
 
     std::optional<Cut> run() {
@@ -142,11 +143,11 @@ class Cutter {
         const Weights::Weight weight = weight_of(cut_, projection, weights, root);
         const std::uint64_t weighed = weights.visits();
         spend(seconds_of_kinds(weighed));
-        if (cut_options_.flatten || better_flat(weight, memory)) {
+        if (flattens_ || better_flat(weight, memory)) {
             choice_ = flat_choice(weight);
-            choice_.spelt_out = cut_options_.flatten;
+            choice_.spelt_out = flattens_;
             std::optional<Cut> cut = assembled(root, projection, weights, memory);
-            if (cut || cut_options_.flatten) return cut;
+            if (cut || flattens_) return cut;
         }
         choice_ = choose_cut(cut_, symmetry_, projection, root, weights, share_of_memory * memory, &meter_);
         spend(seconds_of_kinds(weights.visits() - weighed) + choice_.pieces / WorkRates::pieces);
@@ -180,7 +181,7 @@ class Cutter {
         return failed(false);
     }
 
-    bool limit_normals() const { return options_.limit_normals && !cut_options_.flatten; }
+    bool limit_normals() const { return options_.limit_normals && !flattens_; }
 
     /// Null where all that is culled shows its own light.
     const SelfShadows* self_shadows(const Projection& projection) {
@@ -299,6 +300,8 @@ class Cutter {
     const View& view_;
     const DetailOptions& options_;
     const CutOptions& cut_options_;
+    /// Operands need it: POV-Ray tells what lies in a primitive, and not in a mesh that many are baked into.
+    const bool flattens_;
     Diagnostics& diagnostics_;
     const PreparedCut& prepared_;
     const CutGraph& cut_;

@@ -118,7 +118,8 @@ void Grouping::add_textured_body(const TexturedPrimitive& shape) {
 }
 
 void Grouping::add_textured(const Placed& thing) {
-    place_painted(*thing.textured, thing.world_from_thing, thing.tint, {thing.material, thing.light_share},
+    place_painted(*thing.textured, thing.world_from_thing, thing.tint,
+                  {thing.material, thing.light_share, thing.operand},
                   part_size(thing.painted, thing.world_from_thing.linear));
     include(transformed(thing.world_from_thing, box_[*thing.textured]));
 }
@@ -127,14 +128,15 @@ void Grouping::place_painted(std::uint32_t body, const Affine& world_from_body, 
                              const Finish& finish, double size) {
     const Material material = material_of(finish);
     group_of(colour(Rgb(1.0)), rounded(tint, texture_tint_grain), material,
-             material.pattern ? pattern_size(size) : 1)
+             material.pattern ? pattern_size(size) : 1, finish.operand)
         .placements.push_back({body, world_from_body});
     ++result_.placement_count;
 }
 
 void Grouping::add_primitive(const Placed& thing) {
     const std::uint32_t body = body_of(primitives_[thing.primitive]);
-    place(body, thing.world_from_thing, colour(thing.rgb), {}, {thing.material, thing.light_share});
+    place(body, thing.world_from_thing, colour(thing.rgb), {},
+          {thing.material, thing.light_share, thing.operand});
     include(transformed(thing.world_from_thing, box_[body]));
 }
 
@@ -158,7 +160,7 @@ PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& exact_
     Material material = material_of(finish);
     material.texture.clear(); // place_painted() places those that have one
     material.pattern = {};
-    return group_of(palette, rounded(exact_tint, tint_grain), material, 1);
+    return group_of(palette, rounded(exact_tint, tint_grain), material, 1, finish.operand);
 }
 
 Material Grouping::material_of(const Finish& finish) const {
@@ -171,8 +173,8 @@ Material Grouping::material_of(const Finish& finish) const {
 }
 
 PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& tint, const Material& finish,
-                                   double size) {
-    std::uint64_t hash = mixed(0, palette);
+                                   double size, std::uint32_t operand) {
+    std::uint64_t hash = mixed(mixed(0, palette), operand);
     const auto mix = [&](double number) { hash = mixed(hash, std::bit_cast<std::uint64_t>(number)); };
     for (int c = 0; c < 3; ++c)
         mix(tint.premultiplied[c]);
@@ -184,10 +186,10 @@ PlacementGroup& Grouping::group_of(std::uint32_t palette, const PathTint& tint, 
     const auto next = static_cast<std::uint32_t>(result_.groups.size());
     const std::uint32_t id = group_ids_.find_or_add(hash, next, [&](std::uint32_t other) {
         const PlacementGroup& group = result_.groups[other];
-        return group.palette == palette && group.tint == tint && group.pattern_size == size &&
-               share_finish(group.material, finish);
+        return group.palette == palette && group.operand == operand && group.tint == tint &&
+               group.pattern_size == size && share_finish(group.material, finish);
     });
-    if (id == next) result_.groups.push_back({palette, tint, finish, size, {}, {}});
+    if (id == next) result_.groups.push_back({palette, tint, finish, size, operand, {}, {}});
     return result_.groups[id];
 }
 

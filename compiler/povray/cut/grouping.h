@@ -32,6 +32,7 @@ class Grouping {
     struct Finish {
         std::optional<MaterialId> material;
         double light_share = 1;
+        std::uint32_t operand = no_operand;
     };
 
     void include(const Box& box);
@@ -46,8 +47,8 @@ class Grouping {
     void place(std::uint32_t body, const Affine& world_from_body, std::uint32_t palette,
                const PathTint& exact_tint, const Finish& finish);
     PlacementGroup& group_of(std::uint32_t palette, const PathTint& exact_tint, const Finish& finish);
-    PlacementGroup& group_of(std::uint32_t palette, const PathTint& tint, const Material& finish,
-                             double size);
+    PlacementGroup& group_of(std::uint32_t palette, const PathTint& tint, const Material& finish, double size,
+                             std::uint32_t operand);
     std::uint32_t colour(const Rgb& rgb);
     std::uint32_t palette_id(std::uint32_t request, std::uint32_t part, std::uint32_t painter);
 

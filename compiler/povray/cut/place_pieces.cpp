@@ -42,17 +42,25 @@ bool nearly_as_wide(const Mat3& a, const Mat3& b) {
     return sigma.x <= most_width_ratio && sigma.z >= 1 / most_width_ratio;
 }
 
+/// A piece, and the operand that it is a part of.
+struct OperandPiece : Piece {
+    std::uint32_t operand = no_operand;
+
+    bool is_of_solid() const { return operand != no_operand; }
+};
+
 /// Depth-first unfolding down to the pieces that become meshes.
 class Placing {
   public:
     Placing(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection, const Choice& choice,
             Weights& weights, const SelfShadows* self_shadows, WorkMeter* meter)
         : cut_(cut), symmetry_(symmetry), projection_(projection), choice_(choice), weights_(weights),
-          self_shadows_(self_shadows), walk_({.meter = meter}), seen_(cut.nodes[cut.root].ball.radius) {}
+          self_shadows_(self_shadows), walk_({.meter = meter}), seen_(cut.nodes[cut.root].ball.radius),
+          holds_combined_(std::ranges::any_of(cut.nodes, &CutNode::is_combined)) {}
 
     bool run(const Piece& root, AssemblyLimits& limits) {
-        walk_.push(root);
-        for (Piece piece; walk_.next(piece);) {
+        walk_.push({root});
+        for (OperandPiece piece; walk_.next(piece);) {
             limits.work_seconds -= (1 + more_work_) / WorkRates::leaves;
             more_work_ = 0;
             if (out_.things.size() + out_.runs.part_count() > limits.max_placements ||
@@ -71,9 +79,11 @@ class Placing {
     /// Work in leaves: to compare a piece with others, to widen it, and to place it, which waits for memory.
     static constexpr double work_of_comparison = 2, work_of_widening = 3, work_of_placing = 2;
 
-    void visit(const Piece& piece) {
+    void visit(const OperandPiece& piece) {
         const CutNode& node = cut_.nodes[piece.node];
-        if (!node.unbounded && projection_.drops(world_ball(cut_, piece))) return;
+        // An operand takes part wherever it lies, and what encloses no volume takes none.
+        if (piece.is_of_solid() && is_singular(piece.world_from_node)) return;
+        if (!piece.is_of_solid() && !node.unbounded && projection_.drops(world_ball(cut_, piece))) return;
         if (node.primitive && !node.unbounded && piece.material && is_painted(*piece.material))
             return place_textured(*node.primitive, piece);
         if (node.primitive)
@@ -88,47 +98,59 @@ class Placing {
         if (edge_count(node, cut) == 0 && node.unbounded) return; // of a plane that became a line
         if (edge_count(node, cut) == 0) return place_proxy(node, piece, light_share(piece, detail));
         const Weights::Weight weight = weights_.of(kind);
-        if (!node.unbounded && !piece.faint && !hair && weight.leaves > 1 &&
+        if (!holds_combined_ && !node.unbounded && !piece.faint && !hair && weight.leaves > 1 &&
             (weight.triangles <= choice_.threshold || weights_.is_shell(kind)) && place_mesh(piece, kind))
             return;
-        if (!cut && PlacedRuns::can_hold(cut_, piece)) return out_.runs.add(piece, *node.cell);
+        if (!cut && !piece.is_of_solid() && PlacedRuns::can_hold(cut_, piece))
+            return out_.runs.add(piece, *node.cell);
+        const bool combined = node.is_combined() && !(cut && node.terminal);
+        std::uint32_t operand = combined ? add_operands(node, cut, piece.operand) : piece.operand;
         bool placeable = true;
         for_each_edge(node, cut, [&](const CutEdge& edge) {
-            Piece child = descend(cut_, piece, edge, cut);
+            OperandPiece child{descend(cut_, piece, edge, cut), operand};
             child.faint = piece.faint || (cut && detail <= 1 && node.shadowless);
             if (cut) child.light_share = light_share(piece, detail);
             placeable = placeable && (edge.similarity || is_placeable(child));
             walk_.push(child);
+            if (combined) ++operand;
         });
         if (!placeable && !node.unbounded && bakes && place_mesh(piece, kind)) return walk_.drop_children();
         if (!hair && !spells_out_specks_) return;
         more_work_ += work_of_comparison * static_cast<double>(walk_.children());
-        walk_.drop_children_if([&](const Piece& child) { return !is_new(child); });
+        walk_.drop_children_if([&](const OperandPiece& child) { return !is_new(child); });
+    }
+
+    /// The number of the first of them.
+    std::uint32_t add_operands(const CutNode& node, bool cut, std::uint32_t holder) {
+        const auto count = static_cast<std::uint32_t>(edge_count(node, cut));
+        out_.combined.push_back({node.combination, holder, operands_, count});
+        operands_ += count;
+        return operands_ - count;
     }
 
     /// Share of light of the stand-in for the piece, if it is cut.
-    double light_share(const Piece& piece, double detail) const {
+    double light_share(const OperandPiece& piece, double detail) const {
         if (!self_shadows_) return piece.light_share;
         return self_shadows_->share_within(piece.light_share, piece.node, detail, projection_.error_px());
     }
 
     /// Whether the piece is drawn wider than it is, and so much flatter than its node that few would share
     /// its mesh. It is spelt out.
-    bool is_hair(const Piece& piece) const {
+    bool is_hair(const OperandPiece& piece) const {
         constexpr double flattest_shape = 1e-2;
         return cut_.nodes[piece.node].widens && projection_.culls() && !choice_.spelt_out &&
                is_singular(piece.world_from_node, flattest_shape);
     }
 
     /// Whether POV-Ray can place it, or what it becomes.
-    bool is_placeable(const Piece& piece) const {
+    bool is_placeable(const OperandPiece& piece) const {
         const bool widens = piece.faint || cut_.nodes[piece.node].widens;
         return (widens && projection_.culls()) || !is_singular(piece.world_from_node, flattest_placement);
     }
 
     /// Where parts of sets without area pile up, one of those that lie alike to a quarter of a pixel stands
     /// for all.
-    bool is_new(const Piece& piece) {
+    bool is_new(const OperandPiece& piece) {
         if (!cut_.nodes[piece.node].widens) return true;
         const Ball ball = world_ball(cut_, piece);
         const double cell = 0.5 * projection_.least_half_width(ball);
@@ -142,8 +164,8 @@ class Placing {
         more_work_ += work_of_placing;
     }
 
-    void place_proxy(const CutNode& node, const Piece& piece, double light_share) {
-        Piece proxy = piece;
+    void place_proxy(const CutNode& node, const OperandPiece& piece, double light_share) {
+        OperandPiece proxy = piece;
         proxy.light_share = light_share;
         if (node.finish) proxy.material = node.finish;
         proxy.faint = piece.faint || node.shadowless;
@@ -151,12 +173,15 @@ class Placing {
                         colour_of_proxy(node).over(piece.inherited));
     }
 
-    void place_primitive(const Primitive& primitive, const Affine& world_from_primitive, const Piece& piece,
-                         Rgb base) {
+    void place_primitive(const Primitive& primitive, const Affine& world_from_primitive,
+                         const OperandPiece& piece, Rgb base) {
         Placed thing;
         thing.primitive = out_.primitives.of(primitive);
+        thing.operand = piece.operand;
         const Ball ball = world_ball(cut_, piece);
-        if (primitive == PrimitiveKind::plane && is_singular(world_from_primitive, flattest_plane)) {
+        if (piece.is_of_solid()) {
+            thing.world_from_thing = world_from_primitive;
+        } else if (primitive == PrimitiveKind::plane && is_singular(world_from_primitive, flattest_plane)) {
             const std::optional<Affine> place = place_of_plane(world_from_primitive);
             if (!place) return;
             thing.world_from_thing = *place;
@@ -165,10 +190,10 @@ class Placing {
         }
         if (thing.world_from_thing != world_from_primitive) more_work_ += work_of_widening;
         const double half_width = projection_.least_half_width(ball);
-        const bool speck =
-            piece.faint && !choice_.spelt_out && largest_stretch(world_from_primitive.linear) <= half_width;
+        const bool speck = !piece.is_of_solid() && piece.faint && !choice_.spelt_out &&
+                           largest_stretch(world_from_primitive.linear) <= half_width;
         const Affine mark = speck ? speck_mark(thing.world_from_thing, half_width) : thing.world_from_thing;
-        if (!seen_.insert(2 * thing.primitive, mark)) return;
+        if (!piece.is_of_solid() && !seen_.insert(2 * thing.primitive, mark)) return;
         note_finest(ball);
         thing.rgb = piece.tint.over(base);
         thing.material = piece.material;
@@ -176,17 +201,20 @@ class Placing {
         keep(thing);
     }
 
-    Affine drawn(const Primitive& primitive, const Affine& world_from_primitive, const Piece& piece) const {
+    Affine drawn(const Primitive& primitive, const Affine& world_from_primitive,
+                 const OperandPiece& piece) const {
         if (primitive == PrimitiveKind::plane) return world_from_primitive;
         return drawn_leaf(primitive, world_from_primitive, piece.faint,
                           projection_.least_half_width(world_ball(cut_, piece)))
             .place;
     }
 
-    void place_textured(const Primitive& primitive, const Piece& piece) {
+    void place_textured(const Primitive& primitive, const OperandPiece& piece) {
         const Ball ball = world_ball(cut_, piece);
         Placed thing;
-        thing.world_from_thing = drawn(primitive, piece.world_from_node, piece);
+        thing.operand = piece.operand;
+        thing.world_from_thing =
+            piece.is_of_solid() ? piece.world_from_node : drawn(primitive, piece.world_from_node, piece);
         const double px = norm(thing.world_from_thing.linear) * projection_.pixels_that_matter(ball);
         const TextureSpace space =
             texture_space(primitive, cut_.materials[*piece.material].around, piece.turns);
@@ -196,7 +224,8 @@ class Placing {
         const auto [place, added] =
             textured_of_.emplace(shape, static_cast<std::uint32_t>(out_.textured.size()));
         if (added) out_.textured.push_back(shape);
-        if (!seen_.insert(2 * out_.primitives.of(primitive), thing.world_from_thing)) return;
+        if (!piece.is_of_solid() && !seen_.insert(2 * out_.primitives.of(primitive), thing.world_from_thing))
+            return;
         note_finest(ball);
         thing.textured = place->second;
         thing.painted = primitive;
@@ -209,8 +238,8 @@ class Placing {
     /// The mesh that serves the piece, and whether it is a new one. As for parts that are drawn wider than
     /// they are, one that lies alike; nothing where there are too many that do not, and a mesh would not be
     /// shared.
-    std::optional<std::pair<std::uint32_t, bool>> request_for(const RequestKey& key, const Piece& piece,
-                                                              bool shell) {
+    std::optional<std::pair<std::uint32_t, bool>> request_for(const RequestKey& key,
+                                                              const OperandPiece& piece, bool shell) {
         std::vector<std::uint32_t>& alike = request_of_[key];
         Mat3 shape(0.0);
         if (cut_.nodes[piece.node].widens && projection_.culls() && !shell) {
@@ -231,7 +260,7 @@ class Placing {
     }
 
     /// False where the piece is to be spelt out.
-    bool place_mesh(const Piece& piece, const PieceKind& kind) {
+    bool place_mesh(const OperandPiece& piece, const PieceKind& kind) {
         const bool shell = weights_.of(kind).crowded;
         const NodeId representative = shell ? piece.node : symmetry_.representative[piece.node];
         const std::int64_t finish = piece.material ? static_cast<std::int64_t>(*piece.material) : -1;
@@ -285,7 +314,7 @@ class Placing {
             out_.finest = std::min(out_.finest, 1 / projection_.detail_per_unit(ball));
     }
 
-    std::optional<PainterKey> own_painter(const Piece& piece) const {
+    std::optional<PainterKey> own_painter(const OperandPiece& piece) const {
         if (!cut_.nodes[piece.node].textured && !(piece.material && is_painted(*piece.material)))
             return std::nullopt;
         return PainterKey{0, symmetry_.pair[piece.node], as_array(piece.inherited)};
@@ -306,12 +335,14 @@ class Placing {
     Weights& weights_;
     const SelfShadows* self_shadows_;
     PlacedPieces out_;
-    Walk<Piece> walk_;
+    Walk<OperandPiece> walk_;
     std::map<TexturedPrimitive, std::uint32_t> textured_of_;
     PlacedSet seen_;
     AlikeSet specks_; ///< parts of sets without area
     bool spells_out_specks_ = false;
-    double more_work_ = 0; ///< in leaves, for the piece under way
+    const bool holds_combined_;
+    std::uint32_t operands_ = 0; ///< so far
+    double more_work_ = 0;       ///< in leaves, for the piece under way
     std::map<RequestKey, std::vector<std::uint32_t>> request_of_;
     std::map<PainterKey, std::uint32_t> painter_of_;
 };

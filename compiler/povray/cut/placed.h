@@ -15,6 +15,7 @@
 #include "compiler/detail/primitive_numbers.h"
 #include "compiler/graph/graph.h"
 #include "compiler/povray/cut/placed_runs.h"
+#include "compiler/povray/cut_parts.h"
 #include "compiler/support/tint.h"
 
 namespace graftal {
@@ -33,6 +34,7 @@ struct Placed {
     double light_share = 1;                    ///< Piece's
     std::optional<std::uint32_t> textured;     ///< one of the primitives with pictures or patterns
     Primitive painted = PrimitiveKind::sphere; ///< then: this
+    std::uint32_t operand = no_operand;        ///< that it is a part of
 };
 
 /// A primitive as a mesh with a picture round it.
@@ -49,6 +51,7 @@ struct PlacedPieces {
     PlacedRuns runs;
     std::vector<BakeRequest> requests;
     std::vector<TexturedPrimitive> textured;
+    std::vector<CombinedPart> combined;
     std::vector<double> seen_detail; ///< by request, of shells: the detail of a unit at the middle
     double culled_detail = 0;
     double finest = std::numeric_limits<double>::infinity();

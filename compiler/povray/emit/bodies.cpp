@@ -18,6 +18,7 @@ PovrayBodies::PovrayBodies(const Cut& cut, const std::string& prefix) : cut_(cut
             GRAFTAL_CHECK(placement.body < cut.bodies.size(), "emit_povray: a placement without a body");
             placed[placement.body] = true;
             if (colours > 1) uses_[placement.body].palette = true;
+            if (group.operand != no_operand) uses_[placement.body].solid = true;
         }
         for (const PackedPlacements& parts : group.packed)
             for (const std::uint32_t body : parts.body)
@@ -44,13 +45,14 @@ bool PovrayBodies::declare(SdlWriter& out, ProgressMarks& progress) const {
         if (uses_[i].name.empty()) continue;
         if (const auto* const primitive = std::get_if<Primitive>(&cut_.bodies[i].shape)) {
             out << "\n#declare " << uses_[i].name << " = "
-                << povray_primitive(primitive->kind()).text(*primitive) << " }\n";
+                << povray_primitive(primitive->kind()).text(*primitive)
+                << (uses_[i].solid ? inside_vector : std::string_view()) << " }\n";
             continue;
         }
         const Mesh& mesh = std::get<Mesh>(cut_.bodies[i].shape);
         out << "\n// " << harmless(cut_.bodies[i].name) << ": "
             << static_cast<std::uint64_t>(mesh.triangles.size()) << " triangles\n";
-        if (!declare_mesh(out, uses_[i].name, mesh, uses_[i].palette, progress)) return false;
+        if (!declare_mesh(out, uses_[i].name, mesh, uses_[i].palette, uses_[i].solid, progress)) return false;
     }
     return !out.stopped();
 }

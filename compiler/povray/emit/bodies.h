@@ -33,6 +33,7 @@ class PovrayBodies {
     struct Use {
         std::string name; ///< of the declaration; empty if nothing is to be declared
         bool palette = false;
+        bool solid = false; ///< a mesh that is a part of an operand
     };
 
     const Cut& cut_;

@@ -83,7 +83,7 @@ void write_uv_vectors(SdlWriter& out, const std::vector<std::array<double, 2>>& 
 
 } // namespace
 
-bool declare_mesh(SdlWriter& out, std::string_view name, const Mesh& mesh, bool palette,
+bool declare_mesh(SdlWriter& out, std::string_view name, const Mesh& mesh, bool palette, bool solid,
                   ProgressMarks& progress) {
     GRAFTAL_CHECK(!mesh.triangles.empty(), "emit_povray: a mesh without triangles");
     GRAFTAL_CHECK(mesh.normals.empty() || mesh.normals.size() == mesh.vertices.size(),
@@ -118,6 +118,7 @@ bool declare_mesh(SdlWriter& out, std::string_view name, const Mesh& mesh, bool 
         }
         out << " }\n";
     }
+    if (solid) out << inside_vector << "\n";
     out << "}\n";
     return !out.stopped();
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <tuple>
@@ -82,6 +83,10 @@ class Emitter {
     void write_header();
     bool write_objects();
     bool write_bucket(const Bucket& bucket);
+    bool write_combined(std::uint32_t number);
+    bool write_operand(std::uint32_t operand);
+    bool is_empty(const CombinedPart& part) const;
+    std::optional<Interior> interior_of_part(const CombinedPart& part) const;
     std::string interior_text(const Interior& interior) const;
     void write_usage(const std::vector<std::string>& materials, bool pictures);
     bool needs_fine_bailout() const { return textures_.least_transmit() < default_bailout; }
@@ -97,6 +102,9 @@ class Emitter {
     ProgressMarks progress_;
     std::vector<Bucket> buckets_;
     std::vector<Plane> planes_;
+    /// Solids by the operand that they are parts of, and those that stand in the scene.
+    std::map<std::uint32_t, std::vector<Bucket>> parts_of_operand_;
+    std::map<std::uint32_t, std::vector<std::uint32_t>> combined_of_operand_;
     std::vector<std::string> texture_texts_; ///< by texture: what stands at the objects
 };
 
@@ -108,6 +116,11 @@ void Emitter::sort_into_buckets() {
         const std::uint32_t texture = textures_.texture_of(group);
         const std::optional<Interior> interior = declared_interior(group.material);
         if (texture == buckets_of_texture.size()) buckets_of_texture.emplace_back();
+        if (group.operand != no_operand) {
+            const std::size_t count = group.placements.size();
+            parts_of_operand_[group.operand].push_back({texture, interior, {{g, 0, count}}, {}, count});
+            continue;
+        }
         std::vector<std::uint32_t>& alike = buckets_of_texture[texture];
         const auto known =
             std::ranges::find(alike, interior, [&](std::uint32_t b) { return buckets_[b].interior; });
@@ -135,6 +148,8 @@ void Emitter::sort_into_buckets() {
             bucket.count += parts.size();
         }
     }
+    for (std::uint32_t i = static_cast<std::uint32_t>(cut_.combined.size()); i-- > 0;)
+        if (!is_empty(cut_.combined[i])) combined_of_operand_[cut_.combined[i].holder].push_back(i);
     std::erase_if(buckets_, [](const Bucket& bucket) { return bucket.count == 0; });
     std::ranges::stable_sort(buckets_, {}, [](const Bucket& bucket) {
         const Interior interior = bucket.interior.value_or(Interior());
@@ -173,6 +188,59 @@ bool Emitter::write_bucket(const Bucket& bucket) {
     return !out_.stopped();
 }
 
+/// Whether operands have no parts, so that nothing is left. Those within it are known.
+bool Emitter::is_empty(const CombinedPart& part) const {
+    const auto has_parts = [&](std::uint32_t operand) {
+        return parts_of_operand_.contains(operand) || combined_of_operand_.contains(operand);
+    };
+    if (part.combination == Combination::subtract) return !has_parts(part.first_operand);
+    for (std::uint32_t i = 0; i < part.operand_count; ++i)
+        if (!has_parts(part.first_operand + i)) return true;
+    return false;
+}
+
+/// The first that a part of it has: POV-Ray gives it to the whole.
+std::optional<Interior> Emitter::interior_of_part(const CombinedPart& part) const {
+    for (std::uint32_t i = 0; i < part.operand_count; ++i) {
+        if (const auto parts = parts_of_operand_.find(part.first_operand + i);
+            parts != parts_of_operand_.end())
+            for (const Bucket& bucket : parts->second)
+                if (bucket.interior) return bucket.interior;
+        if (const auto held = combined_of_operand_.find(part.first_operand + i);
+            held != combined_of_operand_.end())
+            for (const std::uint32_t number : held->second)
+                if (const auto interior = interior_of_part(cut_.combined[number])) return interior;
+    }
+    return std::nullopt;
+}
+
+bool Emitter::write_combined(std::uint32_t number) {
+    const CombinedPart& part = cut_.combined[number];
+    out_ << (part.combination == Combination::intersect ? "intersection {\n" : "difference {\n");
+    for (std::uint32_t i = 0; i < part.operand_count; ++i)
+        if (!write_operand(part.first_operand + i)) return false;
+    if (part.holder == no_operand)
+        if (const auto interior = interior_of_part(part)) out_ << "  " << interior_text(*interior) << "\n";
+    out_ << "}\n";
+    return !out_.stopped();
+}
+
+bool Emitter::write_operand(std::uint32_t operand) {
+    const auto parts = parts_of_operand_.find(operand);
+    const auto held = combined_of_operand_.find(operand);
+    const std::size_t count = (parts == parts_of_operand_.end() ? 0 : parts->second.size()) +
+                              (held == combined_of_operand_.end() ? 0 : held->second.size());
+    if (count > 1) out_ << "union {\n";
+    if (parts != parts_of_operand_.end())
+        for (const Bucket& bucket : parts->second)
+            if (!write_bucket(bucket)) return false;
+    if (held != combined_of_operand_.end())
+        for (const std::uint32_t number : held->second)
+            if (!write_combined(number)) return false;
+    if (count > 1) out_ << "}\n";
+    return !out_.stopped();
+}
+
 bool Emitter::write_objects() {
     // One interior for all that has it: a ray that enters one part may leave another.
     for (auto first = buckets_.begin(); first != buckets_.end();) {
@@ -190,6 +258,9 @@ bool Emitter::write_objects() {
         bodies_.place(out_, plane.placement->body, units_.pov_from_world() * plane.placement->world_from_body,
                       look);
     }
+    if (const auto whole = combined_of_operand_.find(no_operand); whole != combined_of_operand_.end())
+        for (const std::uint32_t number : whole->second)
+            if (!write_combined(number)) return false;
     return !out_.stopped();
 }
 
@@ -299,7 +370,10 @@ bool Emitter::write_include(std::vector<PaletteImage>& pictures) {
     }
     if (!bodies_.declare(out_, progress_)) return false;
     out_ << "\n#declare " << identifier_ << " =\n";
-    const bool single = buckets_.size() + planes_.size() == 1;
+    const auto whole = combined_of_operand_.find(no_operand);
+    const bool single =
+        buckets_.size() + planes_.size() + (whole == combined_of_operand_.end() ? 0 : whole->second.size()) ==
+        1;
     if (!single) out_ << "union {\n";
     if (!write_objects()) return false;
     if (!single) out_ << "}\n";

@@ -25,6 +25,7 @@ TraceNode::Kind kind_of(const CutNode& node) {
     if (node.primitive) return TraceNode::Kind::primitive;
     if (node.cell) return TraceNode::Kind::run;
     if (node.unbounded) return TraceNode::Kind::unbounded;
+    if (node.is_combined()) return TraceNode::Kind::combined;
     return node.sealed ? TraceNode::Kind::crushed : TraceNode::Kind::parts;
 }
 
@@ -109,6 +110,8 @@ class ModelBuilder {
             node.stop_tree = add_edges(id, source.stop_edges, bounds_.stop_edge[id]);
             node.stop_edge_count =
                 static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge - node.edge_count;
+        } else if (node.kind == TraceNode::Kind::combined) {
+            add_operands(id, node);
         } else if (node.kind == TraceNode::Kind::run) {
             add_cell(*source.cell, frame_from_graph, node);
         } else if (node.kind == TraceNode::Kind::crushed) {
@@ -124,6 +127,35 @@ class ModelBuilder {
         for (std::size_t i = node.first_edge; i < model_.edges.size(); ++i)
             node.flattest_edge = std::min(node.flattest_edge, model_.edges[i].flatness);
         model_.nodes.push_back(node);
+    }
+
+    /// The tree is over what a difference takes away, as far as that is bounded. All edges of an intersection
+    /// are met one by one.
+    void add_operands(NodeId id, TraceNode& node) {
+        const CutNode& source = cut_.nodes[id];
+        node.combination = source.combination;
+        node.stops_combined = !source.terminal;
+        const std::size_t apart =
+            source.combination == Combination::subtract ? 1 : std::numeric_limits<std::size_t>::max();
+        node.tree = add_operands(id, source.edges, bounds_.edge[id], apart);
+        node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
+        node.stop_tree =
+            add_operands(id, source.stop_edges, bounds_.stop_edge[id], node.stops_combined ? apart : 0);
+        node.stop_edge_count =
+            static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge - node.edge_count;
+    }
+
+    /// Adds the edges in their order, and a tree over the bounded ones from the one numbered `apart` on.
+    std::uint32_t add_operands(NodeId id, const std::vector<CutEdge>& edges, const std::vector<Box>& boxes,
+                               std::size_t apart) {
+        std::vector<BoxedItem> items;
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            const std::uint32_t number =
+                add_part(id, {edges[i], boxes[i], length_in_turns(edges[i].node_from_child.linear)});
+            if (i >= apart && !cut_.nodes[edges[i].child].unbounded)
+                items.emplace_back(model_.edges[number].box, 1, number);
+        }
+        return items.empty() ? no_tree : build_box_tree(items, model_.boxes);
     }
 
     void add_cell(const EdgeCell& cell, const Affine& frame_from_graph, TraceNode& node) {
@@ -176,28 +208,12 @@ class ModelBuilder {
     }
 
     std::uint32_t add_edges(NodeId id, const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) {
-        const Affine frame_from_graph = inverse(model_.graph_from_frame[id]);
         std::vector<std::uint32_t> numbers;
         std::set<EdgeKey> met; // parts that coincide are drawn once
         for (const Part& part : parts_of(edges, boxes)) {
             if (!met.insert(key_of(part.edge)).second) continue;
-            TraceEdge edge;
-            edge.child = part.edge.child;
-            edge.to_primitive = cut_.nodes[edge.child].primitive.has_value();
-            edge.levels = part.edge.levels;
-            edge.similarity = part.edge.similarity;
-            TraceLook look;
-            look.tint = part.edge.tint;
-            look.material = part.edge.material;
-            edge.turns = part.turns;
-            const Affine& graph_from_child = model_.graph_from_frame[edge.child];
-            set_map(edge, frame_from_graph * part.edge.node_from_child * graph_from_child,
-                    part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
-            edge.find_upright();
-            edge.box = transformed(frame_from_graph, part.box);
-            if (!cut_.nodes[edge.child].unbounded)
-                numbers.push_back(static_cast<std::uint32_t>(model_.edges.size()));
-            add(edge, look, part.holder.value_or(id));
+            const std::uint32_t number = add_part(id, part);
+            if (!cut_.nodes[part.edge.child].unbounded) numbers.push_back(number);
         }
         std::vector<BoxedItem> items = grouped_items(model_, numbers);
         return build_box_tree(items, model_.boxes, cancel_);
@@ -210,6 +226,26 @@ class ModelBuilder {
         double turns = 1;
         std::optional<NodeId> holder = {}; ///< of a primitive, unless it is the node itself
     };
+
+    std::uint32_t add_part(NodeId id, const Part& part) {
+        const Affine frame_from_graph = inverse(model_.graph_from_frame[id]);
+        TraceEdge edge;
+        edge.child = part.edge.child;
+        edge.to_primitive = cut_.nodes[edge.child].primitive.has_value();
+        edge.levels = part.edge.levels;
+        edge.similarity = part.edge.similarity;
+        TraceLook look;
+        look.tint = part.edge.tint;
+        look.material = part.edge.material;
+        edge.turns = part.turns;
+        const Affine& graph_from_child = model_.graph_from_frame[edge.child];
+        set_map(edge, frame_from_graph * part.edge.node_from_child * graph_from_child,
+                part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
+        edge.find_upright();
+        edge.box = transformed(frame_from_graph, part.box);
+        add(edge, look, part.holder.value_or(id));
+        return static_cast<std::uint32_t>(model_.edges.size() - 1);
+    }
 
     /// The instances, with the primitives of small groups in place of the groups: a test of one more box is
     /// faster than to enter one more frame. The unbounded ones come first.
@@ -232,7 +268,7 @@ class ModelBuilder {
     bool is_small_group(NodeId id) const {
         const CutNode& node = cut_.nodes[id];
         return spells_out_groups_ && !node.primitive && !node.cell && !node.unending && !node.unbounded &&
-               !node.sealed && !node.cullable;
+               !node.sealed && !node.cullable && !node.is_combined();
     }
 
     void add_group(const CutEdge& group, std::vector<Part>& parts) const {
@@ -366,6 +402,7 @@ std::vector<ShellSizes> found_shell_sizes(TraceModel& model, const Control& cont
 /// Where copies lie in each other so often that rays would not come through.
 void find_shells(TraceModel& model, const Control& control) {
     if (!model.projection.culls()) return;
+    if (std::ranges::any_of(model.prepared.cut.nodes, &CutNode::is_combined)) return;
     std::optional<std::vector<ShellSizes>>& known = model.ground->shell_sizes;
     const auto by_error = [](const CutNode& node) { return node.terminal_px > 0; };
     if (!known || std::ranges::any_of(model.prepared.cut.nodes, by_error))

@@ -109,6 +109,7 @@ struct alignas(64) TraceNode {
         parts,     ///< a union
         unbounded, ///< a union that holds planes, which no box holds
         run,       ///< a range of a run
+        combined,  ///< an intersection or a difference of its edges (traverse/combined.cpp)
         crushed,   ///< leads through a singular map (CutNode::sealed): its edges are met in the world
                    ///< (traverse/flat_walk.cpp)
     };
@@ -129,7 +130,9 @@ struct alignas(64) TraceNode {
     std::uint32_t edge_count = 0;
     std::uint32_t endless_count = 0;   ///< of an unbounded union: the first of its edges, which `tree` lacks
     std::uint32_t stop_edge_count = 0; ///< which follow those
-    std::uint32_t first_unrolling = 0; ///< the deepest first
+    Combination combination = Combination::unite; ///< of its edges
+    bool stops_combined = false;                  ///< its stop edges are operands too, no terminal
+    std::uint32_t first_unrolling = 0;            ///< the deepest first
     std::uint32_t unrolling_count = 0;
     std::uint32_t run = 0;         ///< of TraceModel::runs
     std::uint32_t first_speck = 0; ///< of TraceModel::specks: of what is drawn where it is cut and faint
@@ -210,7 +213,7 @@ struct TraceModel {
     /// More of them, for a ray that was given up before it met anything: it looks into no more parts that may
     /// be culled, so that few are left.
     std::uint64_t more_visits() const { return std::clamp<std::uint64_t>(most_visits, 32, 256); }
-    bool has_shells = false;   ///< some node may be drawn as one
+    bool has_shells = false;   ///< some node may be drawn as one; never beside combined nodes
     std::uint64_t weighed = 0; ///< edges of kinds followed to find where (Weights)
     bool clear_texels = false; ///< some texture has them
     /// True if all is bounded, drawn no wider than it is, opaque, and only scaled evenly and moved down to

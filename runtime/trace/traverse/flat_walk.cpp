@@ -150,6 +150,7 @@ bool Traversal::meet_drawn(const Primitive& primitive, const Affine& drawn, cons
     best_.mesh_colour = nullptr;
     best_.in_world = true;
     best_.crushed = false;
+    best_.inverted = false;
     return true;
 }
 
@@ -264,8 +265,9 @@ void Traversal::meet_flat_part(const FlatPart& part, const RayRange& range, std:
         return keep_flat_way(frame_number);
     }
     const double detail = 2 * ball.radius * model_.projection.detail_per_unit(ball);
-    const bool cut = (hurries_ && node.cullable) || is_cut(node, part.steps, detail);
-    if (cut && node.stop_edge_count == 0) {
+    const bool combined = node.kind == TraceNode::Kind::combined; // is as flat as its proxy
+    const bool cut = combined || (hurries_ && node.cullable) || is_cut(node, part.steps, detail);
+    if (combined || (cut && node.stop_edge_count == 0)) {
         const bool met = meet_leaf(PrimitiveKind::sphere, place * node.node_from_proxy.affine(),
                                    part.faint || node.faint, ball, range);
         if (!met) return;

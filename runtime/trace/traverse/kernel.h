@@ -28,18 +28,14 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
     /// `from`: an entry of a frame that is ready, from which on the ray is to go (Traversal::resume()); null:
     /// from the world on.
     GRAFTAL_INLINE bool run(const Ray& ray, const Entry* from) {
-        self.best_.found = false;
-        self.ray_ = ray;
-        self.patience_ = self.visits_ + most_patience;
-        self.hurries_ = false;
-        if (!self.flat_met_.empty()) self.flat_met_.clear();
+        Entry entry;
+        begin(ray);
         constexpr double before_all = -std::numeric_limits<double>::infinity();
         double enough = before_all, plenty = before_all;
         if (model.most_half_width > 0) {
             enough = model.near_enough(ray, near_enough_share);
             plenty = model.near_enough(ray, plenty_share);
         }
-        Entry entry;
         if (from) {
             entry = *from;
         } else {
@@ -58,6 +54,34 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
             if (self.visits_ > self.visit_limit_ && !self.goes_on()) break;
         }
         return self.best_.found;
+    }
+
+    /// Traversal::ask_operands().
+    GRAFTAL_INLINE bool run(const Ray& ray, const Frame* of, const std::uint32_t* first,
+                            const std::uint32_t* end, const std::uint32_t* tree) {
+        begin(ray);
+        Frame& frame = push();
+        frame = *of;
+        frame.edge = no_edge;
+        ready_for_boxes(frame);
+        // Single precision tells points apart no better.
+        self.best_.t = self.search_ == Search::inside ? range.least + 8e-6 * frame.unit : range.most;
+        Entry entry;
+        for (std::uint32_t edge = *first; edge < *end; ++edge)
+            if (*tree == no_tree || is_endless(model.nodes[model.edges[edge].child]))
+                try_edge(frames[0], edge);
+        bool more = *tree != no_tree && test_boxes(model.boxes, *tree, 0, entry);
+        while ((more || pop(later.first, entry)) && self.visits_ <= self.visit_limit_)
+            more = entry.entry & BoxNode::inner ? go_on_in_boxes(entry) : enter(entry);
+        return self.best_.found;
+    }
+
+    GRAFTAL_INLINE void begin(const Ray& ray) {
+        self.best_.found = false;
+        self.ray_ = ray;
+        self.patience_ = self.visits_ + most_patience;
+        self.hurries_ = false;
+        if (!self.flat_met_.empty()) self.flat_met_.clear();
     }
 
     /// Takes the nearest entry of those from there on, if one is left that is nearer than the best hit.
@@ -232,12 +256,12 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
             if (!(flatness > flattest_placement)) // the product of many flat maps need not be flat
                 flatness = self.placed_flatness(frames[entry.frame].world_from_node, edge);
             if (!(flatness > flattest_placement)) {
-                self.meet_flat(entry.frame, entry.entry, range, any);
+                if (!self.searches_solids()) self.meet_flat(entry.frame, entry.entry, range, any);
                 return false;
             }
         }
         LocalRay ray;
-        if (frames[entry.frame].specks && node.speck_count > 0) {
+        if (frames[entry.frame].specks && node.speck_count > 0 && !self.searches_solids()) {
             const Frame& parent = frames[entry.frame];
             if (!take_ray(edge, parent, entry, ray) ||
                 misses_specks(node, ray, parent.margin.x * edge.growth))
@@ -245,7 +269,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
         }
         if (node.kind == TraceNode::Kind::primitive) {
             const Frame& parent = frames[entry.frame];
-            if (parent.faint && node.primitive != PrimitiveKind::plane)
+            if (parent.faint && node.primitive != PrimitiveKind::plane && !self.searches_solids())
                 meet_faint(node, edge, parent, entry);
             else if (take_ray(edge, parent, entry, ray))
                 meet_primitive(node.primitive, parent, ray, entry);
@@ -300,7 +324,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
                                    Frame& frame, Entry& entry) {
         if (!go_to_child(edge, node, entry.entry, parent, frame)) return false;
         if (frame.cut && node.stop_tree == no_tree) {
-            if (frame.faint || node.faint)
+            if ((frame.faint || node.faint) && !self.searches_solids())
                 meet_faint_proxy(node, frame);
             else
                 meet_proxy(node, frame);
@@ -316,8 +340,12 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
             ready_for_boxes(frame);
             return test_boxes(model.boxes, node.tree, number, entry);
         }
+        if (node.kind == TraceNode::Kind::combined && !(frame.cut && !node.stops_combined)) {
+            self.meet_combined(number, range);
+            return false;
+        }
         if (node.kind == TraceNode::Kind::crushed) {
-            for (std::uint32_t i = 0; i < node.edge_count; ++i)
+            for (std::uint32_t i = 0; i < node.edge_count && !self.searches_solids(); ++i)
                 self.meet_flat(number, node.first_edge + i, range, any);
             return false;
         }
@@ -327,7 +355,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
             meet_shell(self.shell_of(frame), number);
             return false;
         }
-        if (frame.cut && frame.faint && node.speck_count > 0 && frame.flatness == 1) {
+        if (frame.cut && frame.faint && node.speck_count > 0 && frame.flatness == 1 &&
+            !self.searches_solids()) {
             meet_specks(node, number);
             return false;
         }
@@ -380,12 +409,18 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
 
     /// False if nobody asks for more.
     GRAFTAL_INLINE bool set_best(double t) {
-        self.best_.t = t;
+        if (self.search_ == Search::inside) {
+            if (!(t > self.leaves_)) return false;
+            self.leaves_ = t;
+        } else {
+            self.best_.t = t;
+        }
         self.best_.found = true;
         self.best_.mesh_colour = nullptr;
         self.best_.is_upright = false;
         self.best_.in_world = false;
         self.best_.crushed = false;
+        self.best_.inverted = false;
         return !any;
     }
 

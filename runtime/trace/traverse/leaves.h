@@ -14,9 +14,10 @@ Traversal::Kernel<instructions, any>::meet_primitive(const Primitive& primitive,
     const Ray ray{vec3_of(local.origin), vec3_of(local.direction)};
     RayRange near = range_from(local.base, local.speed);
     PrimitiveHit hit;
-    if (!self.meet(primitive, ray, near, hit)) return;
-    for (int crossing = 0; model.clear_texels && self.is_clear(entry.entry, entry.frame,
-                                                               model.edges[entry.entry].turns, ray(hit.t));
+    if (!self.meet_asked(primitive, ray, near, hit)) return;
+    const bool clears = model.clear_texels && !self.searches_solids();
+    for (int crossing = 0;
+         clears && self.is_clear(entry.entry, entry.frame, model.edges[entry.entry].turns, ray(hit.t));
          ++crossing) {
         near.least = hit.t;
         if (crossing == most_crossings || !self.meet(primitive, ray, near, hit)) return;
@@ -106,8 +107,8 @@ GRAFTAL_INLINE void Traversal::Kernel<instructions, any>::meet_proxy(const Trace
     const Double4 direction = direction_through(node.proxy_from_node, frame.direction);
     const double largest = largest_component(direction), unit = 1 / largest;
     PrimitiveHit hit;
-    if (!intersect(PrimitiveKind::sphere, {vec3_of(origin), vec3_of(direction * splat(unit))},
-                   range_from(frame.base, frame.speed * largest), hit))
+    if (!self.meet_asked(PrimitiveKind::sphere, {vec3_of(origin), vec3_of(direction * splat(unit))},
+                         range_from(frame.base, frame.speed * largest), hit))
         return;
     if (!set_best(frame.base + hit.t * (frame.unit * unit))) return;
     self.best_.normal = hit.normal;

@@ -38,10 +38,10 @@ void Traversal::Kernel<instructions, any>::meet_body(RunShape shape, const Affin
     RayRange near = range_from(base, speed);
     PrimitiveHit hit;
     const Primitive primitive = shape.primitive();
-    if (!intersect(primitive, inner, near, hit)) return;
+    if (!self.meet_asked(primitive, inner, near, hit)) return;
     std::uint32_t look = no_edge;
     double turns = 1;
-    if (model.clear_texels) {
+    if (model.clear_texels && !self.searches_solids()) {
         look = run.edge_of(shape, colour);
         turns = length_in_turns(run_from_body.linear);
         for (int crossing = 0; self.is_clear(look, entry.frame, turns, inner(hit.t)); ++crossing) {

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/primitives/part_size.h"
+#include "compiler/primitives/solid.h"
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
 #include "runtime/trace/model/surface_normal.h"
@@ -109,6 +110,27 @@ template<bool any> bool Traversal::run(const Ray& ray, const RayRange& range) {
 bool Traversal::resume(const Entry& from, const RayRange& range) {
     const Ray ray = ray_;
     return run<Kernel, false>(ray, range, &from);
+}
+
+bool Traversal::ask_operands(const Ray& ray, const Frame& frame, std::uint32_t first, std::uint32_t end,
+                             std::uint32_t tree, const RayRange& range) {
+    const Ray copy = ray;
+    return run<Kernel, false>(copy, range, &frame, &first, &end, &tree);
+}
+
+bool Traversal::meet_asked(const Primitive& primitive, const Ray& ray, const RayRange& range,
+                           PrimitiveHit& hit) {
+    if (search_ == Search::surface) return meet(primitive, ray, range, hit);
+    RayRange left{range.least, search_ == Search::inside ? INFINITY : range.most};
+    while (meet(primitive, ray, left, hit)) {
+        if (leaves_solid(primitive, ray, hit) == (search_ == Search::inside)) return true;
+        if (search_ == Search::inside) return false;
+        left.least = hit.t;
+    }
+    // A half space may be entered and never left.
+    if (search_ != Search::inside || primitive != PrimitiveKind::plane) return false;
+    hit.t = INFINITY;
+    return ray(range.least).y < 0;
 }
 
 bool Traversal::goes_on() {
@@ -268,7 +290,7 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
         if (stands_for.finish) hit.material = &materials[*stands_for.finish];
     }
     hit.t = best_.t;
-    hit.normal = normal_at_best();
+    hit.normal = best_.inverted ? -normal_at_best() : normal_at_best();
     hit.light_share = light_share_at_best();
     if (best_.proxy_node == no_edge && !best_.mesh_colour && hit.material->pattern) {
         const Primitive& primitive = model_.nodes[model_.edges[way_.back() & ~from_cut].child].primitive;

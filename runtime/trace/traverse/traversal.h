@@ -71,6 +71,8 @@ class Traversal final : public Surfaces {
     std::uint64_t given_up() const { return given_up_; }
 
   private:
+    class Operands;                                              ///< of a combined object (combined.cpp)
+    struct Boundary;                                             ///< of a combined object
     struct Places;                                               ///< which parts are looked into (places.h)
     template<Instructions instructions, bool any> struct Kernel; ///< the traversal proper (kernel.h)
     struct EvenPlaces; ///< which parts of an even model are looked into (even_places.h)
@@ -169,7 +171,24 @@ class Traversal final : public Surfaces {
         double cell = 0;                                ///< of its shell, in the world
         bool in_world = false; ///< the proxy was met there: so are its normal and point
         bool crushed = false;  ///< a crushed part shows the proxies' own normals
+        bool inverted = false; ///< the inner side of what a difference takes away
     };
+
+    /// Boundaries that a ray asks for.
+    enum class Search : std::uint8_t {
+        surface, ///< the first one, whichever it is
+        entry,   ///< the first by which it enters a solid
+        inside,  ///< of the solids that it is in where the range begins, the last by which it leaves one
+    };
+    /// Asks operands of a frame's combined object: the edges [first, end), those in the tree apart, and the
+    /// tree. `frame`: its copy. Requires a search for solids.
+    bool ask_operands(const Ray& ray, const Frame& frame, std::uint32_t first, std::uint32_t end,
+                      std::uint32_t tree, const RayRange& range);
+    /// Meets the combined object of a frame; true if there is something nearer, and its way is kept.
+    bool meet_combined(std::uint32_t frame_number, const RayRange& range);
+    /// meet(), for solids where they are searched.
+    bool meet_asked(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit);
+    bool searches_solids() const { return search_ != Search::surface; }
 
     const TraceMesh& shell_of(const Frame& frame);
     /// A part that is met in the world.
@@ -289,6 +308,9 @@ class Traversal final : public Surfaces {
     std::uint64_t path_limit_ = UINT64_MAX; ///< of the camera's ray
     bool hurries_ = false;                  ///< the ray has passed the limit
     bool met_flat_ = false;                 ///< rays of a packet that went on alone met flat parts
+    Search search_ = Search::surface;
+    double leaves_ = 0;                ///< where the ray leaves what it is in, as far as is known
+    std::unique_ptr<Traversal> inner_; ///< goes through operands; made when it is first needed
     std::vector<std::uint32_t>
         way_; ///< edges through the frames to the best hit, those from cut nodes marked
     std::vector<std::uint32_t> path_; ///< of the graph, likewise, once the ray is done

@@ -1,0 +1,50 @@
+#include "compiler/primitives/solid.h"
+
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "compiler/primitives/intersect.h"
+#include "compiler/primitives/triangle_mesh.h"
+
+namespace graftal {
+namespace {
+
+/// A tetrahedron without its last `missing` faces; turned inside out if `inwards`.
+Primitive tetrahedron(std::size_t missing, bool inwards) {
+    MeshData data;
+    data.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    data.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    data.triangles.resize(data.triangles.size() - missing);
+    if (inwards)
+        for (auto& triangle : data.triangles)
+            std::swap(triangle[0], triangle[1]);
+    return {PrimitiveKind::mesh, std::make_shared<const TriangleMesh>("mesh(\"t\")", std::move(data))};
+}
+
+TEST(Solid, encloses_volume_where_no_ray_gets_in_without_meeting_it) {
+    for (const PrimitiveKind kind : {PrimitiveKind::sphere, PrimitiveKind::cube, PrimitiveKind::cylinder,
+                                     PrimitiveKind::cone, PrimitiveKind::torus, PrimitiveKind::plane})
+        EXPECT_TRUE(encloses_volume(kind)) << name_of(kind);
+    EXPECT_FALSE(encloses_volume(PrimitiveKind::triangle));
+    EXPECT_TRUE(encloses_volume(tetrahedron(0, false)));
+    EXPECT_TRUE(encloses_volume(tetrahedron(0, true)));
+    EXPECT_FALSE(encloses_volume(tetrahedron(1, false)));
+    EXPECT_FALSE(encloses_volume(tetrahedron(3, false)));
+}
+
+TEST(Solid, is_entered_before_it_is_left_whichever_way_a_mesh_is_wound) {
+    for (const Primitive& primitive : {Primitive(PrimitiveKind::sphere), Primitive(PrimitiveKind::cone),
+                                       tetrahedron(0, false), tetrahedron(0, true)}) {
+        const Ray ray{{0.1, 0.2, 3}, {0.01, -0.02, -1}};
+        PrimitiveHit hit;
+        ASSERT_TRUE(intersect(primitive, ray, {}, hit));
+        EXPECT_FALSE(leaves_solid(primitive, ray, hit));
+        ASSERT_TRUE(intersect(primitive, ray, {hit.t, INFINITY}, hit));
+        EXPECT_TRUE(leaves_solid(primitive, ray, hit));
+        EXPECT_FALSE(intersect(primitive, ray, {hit.t, INFINITY}, hit));
+    }
+}
+
+} // namespace
+} // namespace graftal

@@ -149,7 +149,7 @@ class Bounder {
         }
     }
 
-    /// By the boxes of the operands that have some. Boxes apart leave a point of nothing between them.
+    /// Bounds by the boxes of the operands that have some. Boxes apart leave a point of nothing between them.
     void bound_intersection(ObjectId id) {
         Outer& outer = outers_[id];
         std::optional<Box> common;

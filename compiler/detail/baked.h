@@ -33,9 +33,9 @@ struct BakeRequest {
     Mat3 half_widths_from_unit{0.0};
     std::optional<MaterialId> material; ///< the finish of what names no material
     std::vector<Painter> painters;
-    double expected_leaves = 0;                 ///< about; what is known of it saves memory
-    bool limit_normals = false;                 ///< of proxies, where nothing was crushed
-    const SelfShadows* self_shadows = nullptr;  ///< none: whatever stands for parts has its own light
+    double expected_leaves = 0;                ///< about; what is known of it saves memory
+    bool limit_normals = false;                ///< of proxies, where nothing was crushed
+    const SelfShadows* self_shadows = nullptr; ///< none: whatever stands for parts has its own light
     std::uint64_t most_made_triangles = UINT64_MAX;
     std::uint64_t most_shell_work = UINT64_MAX; ///< points moved for a shell: it gets coarser by that
     bool shell =
@@ -62,7 +62,7 @@ struct Baked {
     std::size_t triangles = 0;
     double culled_detail = 0; ///< largest detail of a culled part
     double tessellation_px = 0;
-    std::uint64_t visits = 0;     ///< of the walk
+    std::uint64_t visits = 0; ///< of the walk
     /// Triangles as work: those of pictures cost more, and those that other faces hide were made, too.
     std::uint64_t made_triangles = 0;
     std::uint64_t shell_work = 0; ///< points moved for a shell

@@ -23,7 +23,7 @@ std::string_view word_of(const Object& object) {
     return object.combination == Combination::intersect ? "intersection" : "difference";
 }
 
-/// What keeps objects from being operands.
+/// Reasons that keep objects from being operands.
 class Operands {
   public:
     Operands(const Graph& graph, const Components& components)

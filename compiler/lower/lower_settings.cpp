@@ -195,9 +195,8 @@ void check_duplicates(const std::vector<SceneStatement>& statements, Diagnostics
         if (fresh) continue;
         const std::string& keyword = scene_keywords()[static_cast<std::size_t>(statement.kind)];
         diagnostics
-            .error(statement.span, named
-                                       ? fmt::format("duplicate {} '{}'", keyword, statement.name)
-                                       : fmt::format("duplicate '{}'", keyword))
+            .error(statement.span, named ? fmt::format("duplicate {} '{}'", keyword, statement.name)
+                                         : fmt::format("duplicate '{}'", keyword))
             .with_note(place->second, "first defined here");
     }
 }

@@ -16,9 +16,9 @@
 #include "compiler/lsys/compose/sizes.h"
 #include "compiler/lsys/derive/deriver.h"
 #include "compiler/lsys/derive/folded_word.h"
-#include "compiler/lsys/walk/queries.h"
 #include "compiler/lsys/derive/stream.h"
 #include "compiler/lsys/palette.h"
+#include "compiler/lsys/walk/queries.h"
 #include "compiler/lsys/width.h"
 #include "compiler/support/stage_price.h"
 

@@ -15,9 +15,9 @@
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
 #include "compiler/lsys/compile/grammar.h"
-#include "compiler/lsys/walk/written_word.h"
 #include "compiler/lsys/drawing.h"
 #include "compiler/lsys/turtle/model_placer.h"
+#include "compiler/lsys/walk/written_word.h"
 #include "compiler/support/counter_random.h"
 #include "compiler/syntax/everyday_words.h"
 

@@ -30,7 +30,7 @@ bool share_placement(const Instance& a, const Instance& b) {
 }
 
 bool can_give(const Object& object) {
-    // What operands make together is bounded otherwise than what is united (Renumbering::united).
+    // The set that operands make together is bounded otherwise than what is united (Renumbering::united).
     if (object.primitive || object.packed || object.is_combined()) return false;
     const Instance& first = object.instances.front();
     if (is_singular(first.parent_from_child)) return false;

@@ -11,10 +11,11 @@ namespace {
 
 /// Apart from steps and time.
 bool same_options(const LowerOptions& a, const LowerOptions& b) {
-    return a.set == b.set && a.preset == b.preset && a.in_place == b.in_place && a.seed == b.seed && a.root == b.root &&
-           a.exact == b.exact && a.max_modules == b.max_modules && a.run_from == b.run_from &&
-           a.max_objects == b.max_objects && a.may_draw_nothing == b.may_draw_nothing &&
-           a.may_leave_out_colours == b.may_leave_out_colours && a.may_be_orbit == b.may_be_orbit;
+    return a.set == b.set && a.preset == b.preset && a.in_place == b.in_place && a.seed == b.seed &&
+           a.root == b.root && a.exact == b.exact && a.max_modules == b.max_modules &&
+           a.run_from == b.run_from && a.max_objects == b.max_objects &&
+           a.may_draw_nothing == b.may_draw_nothing && a.may_leave_out_colours == b.may_leave_out_colours &&
+           a.may_be_orbit == b.may_be_orbit;
 }
 
 /// The depth as the stages after lowering read it: that of an L-system is spent.

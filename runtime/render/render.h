@@ -47,9 +47,9 @@ struct RenderOptions : PictureWishes {
     bool aovs = false;             ///< of an EXR: further channels (aov_channels.h)
     /// Whether the picture needs what its samples meet, and not only their light.
     bool needs_aovs() const { return aovs || compile.view.transparent; }
-    bool progressive = false;      ///< write coarse pictures first, each in place of the last
-    bool unconfined = false;       ///< PovrayJob::unconfined
-    std::string keep;              ///< a directory for the scene, to stay; empty: a temporary one
+    bool progressive = false; ///< write coarse pictures first, each in place of the last
+    bool unconfined = false;  ///< PovrayJob::unconfined
+    std::string keep;         ///< a directory for the scene, to stay; empty: a temporary one
     std::function<void(const DrawProgress&)> on_progress;
     /// Called before the picture starts.
     std::function<void(const DrawStart&)> on_start;

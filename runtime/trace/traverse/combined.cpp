@@ -64,7 +64,7 @@ class Traversal::Operands {
     }
 
   private:
-    /// What lies as near together counts as one place, as a share of the object's half size. So faces that
+    /// Distance within which boundaries count as one place, as a share of the object's half size. So faces that
     /// coincide leave no skin: a difference takes its face away.
     static constexpr double same_place = 1e-9;
 

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "compiler/graph/print.h"
+#include "compiler/graph/text/print.h"
 #include "compiler/graph/verify.h"
 #include "compiler/passes/hoist_placements.h"
 #include "compiler/passes/merge_equivalent.h"

@@ -17,6 +17,7 @@ from left_over import orphans, tree
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
 SCENES = ROOT / 'scenes'
 OLD = b'old'
+FOUND_END = b'width: 1 }\n'  # of a whole model by `fit`
 SIGNALS = ('INT', 'TERM', 'HUP', 'KILL')
 TURN = ['animate', SCENES / 'hart/pound_sign.rifs', '-q', '--size', '96x54', '--frames', '4', '--antialias', 'off',
         '--plain-light']
@@ -114,13 +115,14 @@ class Trial:
 
     def half_files(self, outputs, good):
         """Files under final names that are neither what was there nor what should be; of those that belong together all
-        or none. Frames are done one by one, and those of a film lie beside it until it is."""
+        or none. Frames are done one by one, and those of a film lie beside it until it is. `fit` keeps the best so far."""
         before = {self.old: OLD} if self.old else {}
         if outputs in (before, good):
             return []
         frames = {name for name, data in outputs.items()
                   if name.startswith('out/') and data == good.get(name) or
-                  name.startswith('out.frames/') and data.endswith(b'IEND\xaeB`\x82')}
+                  name.startswith('out.frames/') and data.endswith(b'IEND\xaeB`\x82') or
+                  name == 'out.rifs' and data.endswith(FOUND_END)}
         return sorted(name for name, data in outputs.items() if name not in frames and before.get(name) != data)
 
     def findings(self):

@@ -168,7 +168,8 @@ TEST_F(Faults, CoarserFramesAreSaid) {
     ASSERT_EQ(graftal(animate).status, 0);
     const std::string good = shell("md5sum a.png").out;
     int coarser = 0;
-    for (int number = 24000; number <= 28800; number += 200) {
+    // Allocations of the cut come after those of the start, whose number nobody knows.
+    for (int number = 20000; number <= 60000 && coarser < 3; number += 200) {
         const RunResult result = with("alloc:" + std::to_string(number), animate);
         EXPECT_THAT(result.status, AnyOf(Eq(0), Eq(1), Eq(3))) << number;
         if (result.status != 0 || shell("md5sum a.png").out == good) continue;

@@ -33,7 +33,7 @@ struct EdgeCell;
 struct CutNode {
     std::string name;
     std::optional<Primitive> primitive;
-    Combination combination = Combination::unite; ///< of the edges, and of the stop edges but for a terminal
+    Combination combination = Combination::unite; ///< of the edges, and of the stop edges except a terminal
     std::vector<CutEdge> edges;
     std::vector<CutEdge> stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
     std::shared_ptr<const EdgeCell> cell; ///< in place of edges: see for_each_edge() (edge_cell.h)

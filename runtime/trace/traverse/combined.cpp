@@ -64,8 +64,8 @@ class Traversal::Operands {
     }
 
   private:
-    /// Distance within which boundaries count as one place, as a share of the object's half size. So faces that
-    /// coincide leave no skin: a difference takes its face away.
+    /// Distance within which boundaries count as one place, as a share of the object's half size. So faces
+    /// that coincide leave no skin: a difference takes its face away.
     static constexpr double same_place = 1e-9;
 
     bool is_out_of_visits() const { return inner_.visits_ > inner_.visit_limit_; }

@@ -137,23 +137,24 @@ class ModelBuilder {
         node.stops_combined = !source.terminal;
         const std::size_t apart =
             source.combination == Combination::subtract ? 1 : std::numeric_limits<std::size_t>::max();
-        node.tree = add_operands(id, source.edges, bounds_.edge[id], apart);
+        node.tree = add_operands(id, node, source.edges, bounds_.edge[id], apart);
         node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
         node.stop_tree =
-            add_operands(id, source.stop_edges, bounds_.stop_edge[id], node.stops_combined ? apart : 0);
+            add_operands(id, node, source.stop_edges, bounds_.stop_edge[id], node.stops_combined ? apart : 0);
         node.stop_edge_count =
             static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge - node.edge_count;
     }
 
     /// Adds the edges in their order, and a tree over the bounded ones from the one numbered `apart` on.
-    std::uint32_t add_operands(NodeId id, const std::vector<CutEdge>& edges, const std::vector<Box>& boxes,
-                               std::size_t apart) {
+    std::uint32_t add_operands(NodeId id, TraceNode& node, const std::vector<CutEdge>& edges,
+                               const std::vector<Box>& boxes, std::size_t apart) {
         std::vector<BoxedItem> items;
         for (std::size_t i = 0; i < edges.size(); ++i) {
             const std::uint32_t number =
                 add_part(id, {edges[i], boxes[i], length_in_turns(edges[i].node_from_child.linear)});
-            if (i >= apart && !cut_.nodes[edges[i].child].unbounded)
-                items.emplace_back(model_.edges[number].box, 1, number);
+            const bool endless = cut_.nodes[edges[i].child].unbounded;
+            node.has_endless_operands = node.has_endless_operands || endless;
+            if (i >= apart && !endless) items.emplace_back(model_.edges[number].box, 1, number);
         }
         return items.empty() ? no_tree : build_box_tree(items, model_.boxes);
     }

@@ -132,6 +132,7 @@ struct alignas(64) TraceNode {
     std::uint32_t stop_edge_count = 0; ///< which follow those
     Combination combination = Combination::unite; ///< of its edges
     bool stops_combined = false;                  ///< its stop edges are operands too, no terminal
+    bool has_endless_operands = false;            ///< some operand is unbounded
     std::uint32_t first_unrolling = 0;            ///< the deepest first
     std::uint32_t unrolling_count = 0;
     std::uint32_t run = 0;         ///< of TraceModel::runs

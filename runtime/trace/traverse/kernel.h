@@ -67,9 +67,13 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
         // Single precision tells points apart no better.
         self.best_.t = self.search_ == Search::inside ? range.least + 8e-6 * frame.unit : range.most;
         Entry entry;
-        for (std::uint32_t edge = *first; edge < *end; ++edge)
-            if (*tree == no_tree || is_endless(model.nodes[model.edges[edge].child]))
-                try_edge(frames[0], edge);
+        // Endless ones stand in no tree, and few models have some.
+        if (*tree == no_tree || model.nodes[frame.node].has_endless_operands) {
+            self.boxes_ += *end - *first;
+            for (std::uint32_t edge = *first; edge < *end; ++edge)
+                if (*tree == no_tree || is_endless(model.nodes[model.edges[edge].child]))
+                    try_edge(frames[0], edge);
+        }
         bool more = *tree != no_tree && test_boxes(model.boxes, *tree, 0, entry);
         while ((more || pop(later.first, entry)) && self.visits_ <= self.visit_limit_)
             more = entry.entry & BoxNode::inner ? go_on_in_boxes(entry) : enter(entry);

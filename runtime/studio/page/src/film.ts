@@ -104,7 +104,9 @@ export class Film {
 
   /** The share of a file under way. */
   progress(id: number, share: number): void {
-    if (id === this.file_id) this.bar.value = share;
+    if (id !== this.file_id) return;
+    this.bar.value = share;
+    if (share >= 1) this.studio.say('All frames are drawn. Writing the file…');
   }
 
   private says({ set }: KeyFrame): string {

@@ -13,6 +13,7 @@ interface Row {
 
 /** A model may have thousands of parameters: the page stays quick, and shows the first. */
 const most_shown = 64;
+const is_common = (name: string) => name === 'steps' || name === 'seed';
 const groups: [Parameter['kind'], string][] = [['let', 'Values'], ['inner', 'Inner values'], ['setting', 'Settings']];
 
 export class Knobs {
@@ -32,7 +33,8 @@ export class Knobs {
       this.build(parameters, all.length - parameters.length);
     }
     for (const parameter of parameters) {
-      const row = this.rows.get(parameter.name)!;
+      const row = this.rows.get(parameter.name);
+      if (!row) continue;
       const [least, most] = range_of(parameter);
       const { set } = history.now, changed = parameter.name in set;
       row.slider.show(changed ? set[parameter.name]! : parameter.value, least, most);
@@ -55,7 +57,8 @@ export class Knobs {
     this.rows.clear();
     this.element.replaceChildren();
     for (const [kind, title] of groups) {
-      const mine = parameters.filter((parameter) => parameter.kind === kind);
+      // Steps and seed of an L-system have their row below, as those of all models.
+      const mine = parameters.filter((parameter) => parameter.kind === kind && !(kind === 'setting' && is_common(parameter.name)));
       if (mine.length) this.element.append(element('h2', {}, title), ...mine.map((parameter) => this.parameter_row(parameter)));
     }
     if (more > 0) this.element.append(element('p', { class: 'note' }, `and ${more} more`));

@@ -94,7 +94,8 @@ export class Maps {
     }));
     if (more > 0) this.list.append(element('li', { class: 'note' }, `and ${more} more`));
     if (!maps.length) this.list.append(element('li', { class: 'note' }, 'This model has no maps. Models of the language .rifs have them.'));
-    else if (zoomed) this.list.append(element('li', { class: 'note' }, 'The boxes show in the whole view: press 0 on the picture.'));
+    else if (!zoomed) this.list.append(element('li', { class: 'note' }, 'Drag a box to move it, a corner to scale it, its round knob to turn it.'));
+    if (maps.length && zoomed) this.list.append(element('li', { class: 'note' }, 'The boxes show in the whole view: press 0 on the picture.'));
     if (focus) this.list.querySelector<HTMLElement>(`[data-listed="${CSS.escape(focus)}"]`)?.focus();
   }
 

@@ -107,7 +107,7 @@ export class Out {
   async copy_link(): Promise<void> {
     const elsewhere = document.querySelector<HTMLMetaElement>('meta[name="graftal-site"]')?.content;
     const base = elsewhere ?? location.origin + location.pathname;
-    await this.copy(base + (await fragment_of(this.studio.history.now)), 'The link');
+    await this.copy(base + (await fragment_of(this.studio.history.now)), 'The link', !elsewhere && this.studio.hello?.home === 'program' ? ' It opens on this computer while graftal runs; elsewhere, paste it into the studio there.' : '');
   }
 
   async file(file: SentFile): Promise<void> {
@@ -156,10 +156,10 @@ export class Out {
     }
   }
 
-  private async copy(text: string, what: string): Promise<void> {
+  private async copy(text: string, what: string, more = ''): Promise<void> {
     try {
       await navigator.clipboard.writeText(text);
-      this.studio.say(`${what} is in the clipboard.`);
+      this.studio.say(`${what} is in the clipboard.${more}`);
     } catch {
       const area = element('textarea', { class: 'unseen' });
       area.value = text;
@@ -167,7 +167,7 @@ export class Out {
       area.select();
       const done = document.execCommand('copy');
       area.remove();
-      this.studio.say(done ? `${what} is in the clipboard.` : 'The browser does not let the page copy.');
+      this.studio.say(done ? `${what} is in the clipboard.${more}` : 'The browser does not let the page copy.');
     }
   }
 }

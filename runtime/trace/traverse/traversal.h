@@ -262,6 +262,7 @@ class Traversal final : public Surfaces {
     bool meet_within(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit,
                      std::uint64_t most_visits) {
         constexpr std::uint64_t steps_a_visit = RayWork::part / RayWork::mesh_step;
+        hit.steps = 0;
         const bool met = intersect(primitive, ray, range, hit, most_visits * steps_a_visit);
         visits_ += hit.steps / steps_a_visit;
         more_work_ += RayWork::mesh_step * (hit.steps % steps_a_visit);

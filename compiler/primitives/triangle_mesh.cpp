@@ -72,6 +72,11 @@ Vec3 normal_at(const TriangleMesh& form, std::uint32_t number, const std::array<
 }
 
 /// The file's coordinates where it has them, else the picture over the box, seen from the front.
+/// The triangle whose coordinates a point of the surface has; any where there are none.
+std::uint32_t triangle_at(const TriangleMesh& form, Vec3 point) {
+    return form.data.uv.empty() ? 0 : form.tree.nearest(point);
+}
+
 TexturePoint texture_at(const TriangleMesh& form, std::uint32_t number, Vec3 point) {
     if (form.data.uv.empty()) {
         const Vec3 size = form.box.size();
@@ -193,13 +198,13 @@ TessellatedPrimitive mesh(const Primitive& primitive, int) {
 
 TexturePoint texture_point(const Primitive& primitive, const TextureSpace&, Vec3 point) {
     const TriangleMesh& form = form_of(primitive);
-    return texture_at(form, form.tree.nearest(point), point);
+    return texture_at(form, triangle_at(form, point), point);
 }
 
 /// On the corners of a seam two triangles have their own coordinates each.
 std::array<TexturePoint, 3> texture_triangle(const Primitive& primitive, const std::array<Vec3, 3>& points) {
     const TriangleMesh& form = form_of(primitive);
-    const std::uint32_t number = form.tree.nearest((points[0] + points[1] + points[2]) / 3.0);
+    const std::uint32_t number = triangle_at(form, (points[0] + points[1] + points[2]) / 3.0);
     return {texture_at(form, number, points[0]), texture_at(form, number, points[1]),
             texture_at(form, number, points[2])};
 }

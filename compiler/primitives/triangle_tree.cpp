@@ -290,11 +290,13 @@ Vec3 TriangleTree::farthest(Vec3 direction) const {
 }
 
 std::uint32_t TriangleTree::nearest(Vec3 point) const {
+    // On a triangle up to rounding: of many that coincide one is enough.
+    const double near_enough = 1e-28 * glm::dot(point, point);
     double least = infinite;
     std::uint32_t best = 0;
     std::array<std::uint32_t, 64> stack{};
     std::size_t size = 1;
-    while (size > 0) {
+    while (size > 0 && least > near_enough) {
         const Node& node = nodes_[stack[--size]];
         if (!(distance2(node, point) < least)) continue;
         if (node.count == 0) {

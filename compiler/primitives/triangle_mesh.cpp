@@ -35,7 +35,7 @@ bool has_area(const Triangle& t) {
 /// The triangle turned about so that its least corner is the first.
 Triangle from_least_corner(Triangle t) {
     const auto less = [](Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
-    std::ranges::rotate(t, std::ranges::min_element(t, less));
+    std::rotate(t.begin(), std::ranges::min_element(t, less), t.end());
     return t;
 }
 

@@ -71,12 +71,12 @@ Vec3 normal_at(const TriangleMesh& form, std::uint32_t number, const std::array<
     return length > 0 ? sum / length : facet;
 }
 
-/// The file's coordinates where it has them, else the picture over the box, seen from the front.
 /// The triangle whose coordinates a point of the surface has; any where there are none.
 std::uint32_t triangle_at(const TriangleMesh& form, Vec3 point) {
     return form.data.uv.empty() ? 0 : form.tree.nearest(point);
 }
 
+/// The file's coordinates where it has them, else the picture over the box, seen from the front.
 TexturePoint texture_at(const TriangleMesh& form, std::uint32_t number, Vec3 point) {
     if (form.data.uv.empty()) {
         const Vec3 size = form.box.size();

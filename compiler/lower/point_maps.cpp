@@ -40,8 +40,7 @@ std::optional<Affine> map_by_points(std::span<const Vec3> points, std::span<cons
         if (!(std::abs(area) > least_share * glm::length(a) * glm::length(b))) return std::nullopt;
         // Columns of the map by Cramer's rule.
         const Vec3 x = (b.y * to_a - a.y * to_b) / area, y = (a.x * to_b - b.x * to_a) / area;
-        const Affine map = flat_map(x, y, {});
-        return through(map.linear, points[0], images[0]);
+        return through(flat_map(x, y, {}).linear, points[0], images[0]);
     }
     const Vec3 c = points[3] - points[0];
     const Mat3 edges(a, b, c);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/lower/lower_transform.h"
+#include "compiler/lower/point_maps.h"
 #include "compiler/rifs/system.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
@@ -63,10 +64,7 @@ std::string number_text(double value) {
 
 Affine flattened(const Affine& map) {
     const Mat3& m = map.linear;
-    Affine flat{Mat3(m[0][0], m[0][1], 0, m[1][0], m[1][1], 0, 0, 0, 0),
-                {map.translation.x, map.translation.y, 0}};
-    flat.linear[2][2] = std::sqrt(std::abs(m[0][0] * m[1][1] - m[1][0] * m[0][1]));
-    return flat;
+    return flat_map({m[0][0], m[0][1], 0}, {m[1][0], m[1][1], 0}, {map.translation.x, map.translation.y, 0});
 }
 
 std::optional<MapForm> MapForm::of(const RifsMap& map, const Environment& lets, std::string& why) {

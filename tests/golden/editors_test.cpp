@@ -49,7 +49,7 @@ TEST_F(Editors, LspServesUntilItIsToldToEnd) {
         "for i in $(seq 600); do grep -q publishDiagnostics out && break; sleep 0.1; done; " +
         message(R"({"jsonrpc":"2.0","id":2,"method":"shutdown"})") +
         message(R"({"jsonrpc":"2.0","method":"exit"})");
-    const RunResult result = shell("( " + script + " ) | \"$graftal\" lsp > out");
+    const RunResult result = shell(": > out; ( " + script + " ) | \"$graftal\" lsp >> out");
     const std::string out = read("out");
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_THAT(out, AllOf(HasSubstr("\"capabilities\""), HasSubstr("textDocument/publishDiagnostics"),

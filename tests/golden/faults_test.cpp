@@ -228,8 +228,11 @@ TEST_F(Faults, LibrariesThatGiveUpAreSaid) {
 TEST_F(Faults, SignalsOfLibrariesThatGiveUpAreSaid) {
     for (const std::string signal : {"ABRT", "TRAP", "SEGV", "BUS"}) {
         const RunResult result =
-            shell("mkfifo pipe; \"$graftal\" check - <>pipe & child=$!; sleep 0.5; kill -" + signal +
-                  " $child; wait $child; status=$?; rm pipe; exit $status");
+            shell("mkfifo pipe; \"$graftal\" check - <>pipe & child=$!; "
+                  // SIGABRT is bit 5 of the signals that the program catches.
+                  "for i in $(seq 3000); do grep -q 'SigCgt.*[2367abef].$' /proc/$child/status && break; "
+                  "sleep 0.01; done; kill -" +
+                  signal + " $child; wait $child; status=$?; rm pipe; exit $status");
         EXPECT_EQ(result.status, 3) << signal;
         EXPECT_THAT(result.err, HasSubstr("graftal: internal error: graftal or one of its libraries"))
             << signal;

@@ -19,7 +19,8 @@ Sampling sampling_for(bool sampled, const View& view, const PictureWishes& wishe
     if (!sampled) return {.antialias = wishes.antialias};
     const SampleGoal goal = sample_goal(view.quality);
     return {.most_samples = wishes.samples.value_or(goal.most_samples),
-            .noise_255 = wishes.noise_255.value_or(wishes.samples ? 0 : goal.noise_255)};
+            .noise_255 = wishes.noise_255.value_or(wishes.samples ? 0 : goal.noise_255),
+            .denoise = wishes.denoise.value_or(view.quality != Quality::best)};
 }
 
 } // namespace

@@ -15,6 +15,7 @@ struct PictureWishes {
     std::optional<int> antialias = 2;   ///< up to 4^(N-1) samples a pixel; nothing: one
     std::optional<int> samples;         ///< of soft light, the most a pixel; nothing: by the quality
     std::optional<double> noise_255;    ///< largest error left; nothing: by the quality
+    std::optional<bool> denoise;        ///< soft light; nothing: by the quality
     std::optional<double> work_seconds; ///< of one processor; nothing: by the quality
     bool listed_lights = false;         ///< soft light from a list of lights (light_list.h)
 

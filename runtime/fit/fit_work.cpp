@@ -47,7 +47,7 @@ struct Price {
     double fixed = 0;  ///< the shells that its rays meet
     bool known = true; ///< else it was too much to be measured
 
-    double of(double samples_a_pixel) const { return fixed + samples_a_pixel * sample; }
+    double of(double samples) const { return fixed + samples * sample; }
 };
 
 /// The price at `share` of the way from one error to another.
@@ -70,7 +70,7 @@ class Fitting {
         fit();
         fitted_.error_px = fitted_.model->options.error_px;
         fitted_.sample_seconds = price_.sample;
-        fitted_.seconds = price_.of(fitted_.sampling.samples_a_pixel());
+        fitted_.seconds = seconds_of(price_, fitted_.sampling);
         fitted_.tried_seconds = tried_seconds_;
         return std::move(fitted_);
     }
@@ -86,17 +86,17 @@ class Fitting {
     void fit() {
         make_anew(1);
         fitted_.sampling = ask_.wanted;
-        fitted_.whole_seconds = price_.of(ask_.wanted.samples_a_pixel());
+        fitted_.whole_seconds = seconds_of(price_, ask_.wanted);
         if (!ask_.options.culls() || fits(ask_.wanted)) return;
         const Price price_asked = price_;
         const Choice best = best_choice();
         if (best.factor != factor_)
             make_anew(best.factor, best.factor == 1 ? std::optional(price_asked) : std::nullopt);
-        fitted_.sampling = affordable_sampling(ask_.wanted, samples_for(price_));
+        fitted_.sampling = affordable(price_);
         if (is_almost_affordable(best.sampling)) fitted_.sampling = best.sampling;
         while (price_.known && !fits(fitted_.sampling) && !is_almost_affordable(fitted_.sampling) &&
                fitted_.model->most_visits > fewest_visits) {
-            const std::uint64_t fewer = price_.of(fitted_.sampling.samples_a_pixel()) > 4 * allowed() ? 4 : 2;
+            const std::uint64_t fewer = seconds_of(price_, fitted_.sampling) > 4 * allowed() ? 4 : 2;
             fitted_.model->most_visits = std::max(fitted_.model->most_visits / fewer, fewest_visits);
             fitted_.rays_cut = true;
             price_ = look(*fitted_.model);
@@ -104,7 +104,7 @@ class Fitting {
     }
 
     bool fits(const Sampling& sampling) const {
-        return price_.known && price_.of(sampling.samples_a_pixel()) <= allowed();
+        return price_.known && seconds_of(price_, sampling) <= allowed();
     }
 
     /// Tries take of the work while a choice is made; a fourth of the samples for the last of them would be a
@@ -112,7 +112,7 @@ class Fitting {
     bool is_almost_affordable(const Sampling& sampling) const {
         constexpr double overdraft = 1.2;
         return price_.known &&
-               tried_seconds_ + price_.of(sampling.samples_a_pixel()) <= overdraft * work_seconds_;
+               tried_seconds_ + seconds_of(price_, sampling) <= overdraft * work_seconds_;
     }
 
     /// Tries larger and larger errors, as long as they may still win.
@@ -151,15 +151,29 @@ class Fitting {
     }
 
     Choice choice(double factor, const Price& price) const {
-        Choice made{factor, affordable_sampling(ask_.wanted, samples_for(price)), infinite_loss};
-        if (price.known && price.of(made.sampling.samples_a_pixel()) <= allowed())
+        Choice made{factor, affordable(price), infinite_loss};
+        if (price.known && seconds_of(price, made.sampling) <= allowed())
             made.loss = std::log2(factor) + loss_of_samples(ask_.wanted, made.sampling);
         return made;
     }
 
-    /// A pixel.
-    double samples_for(const Price& price) const {
-        return price.known ? std::max(allowed() - price.fixed, 0.0) / std::max(price.sample, 1e-12) : 0;
+    /// The denoiser has a price of its own, whatever the model.
+    double denoising_seconds(const Sampling& sampling) const {
+        return sampling.feature_rays() > 0 ? pixels_ / WorkRates::denoised_pixels : 0;
+    }
+
+    double seconds_of(const Price& price, const Sampling& sampling) const {
+        return price.of(sampling.cost_in_samples()) + denoising_seconds(sampling);
+    }
+
+    Sampling affordable(const Price& price) const {
+        const auto within = [&](double seconds) {
+            return affordable_sampling(ask_.wanted, price.known ? std::max(seconds - price.fixed, 0.0) /
+                                                                      std::max(price.sample, 1e-12)
+                                                                : 0);
+        };
+        const Sampling denoised = within(allowed() - denoising_seconds(ask_.wanted));
+        return denoised.denoise || !ask_.wanted.denoise ? denoised : within(allowed());
     }
 
     /// A model of this error, whose price may be known, or of the smallest larger one for which the memory

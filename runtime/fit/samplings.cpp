@@ -14,6 +14,8 @@ constexpr double loss_of_light = 0.15, loss_of_last_light = 0.4, loss_of_edges =
 /// Octaves of error for an octave of a block's width.
 constexpr double loss_of_pixels = 1.3;
 constexpr double enough_light = 4; // samples
+/// Samples that are worth a denoised one.
+constexpr double worth_of_denoising = 2;
 
 } // namespace
 
@@ -41,17 +43,31 @@ double least_seconds(const Sampling& sampling, ImageSize size) {
     return sampling.samples_a_pixel() * size.width * size.height / WorkRates::samples;
 }
 
-Sampling affordable_sampling(const Sampling& wanted, double samples_a_pixel) {
-    if (samples_a_pixel >= wanted.samples_a_pixel()) return wanted;
-    if (samples_a_pixel >= 2 || (samples_a_pixel >= 1 && wanted.most_samples > 0))
-        return {.most_samples = static_cast<int>(samples_a_pixel), .noise_255 = wanted.noise_255};
-    if (samples_a_pixel >= 1) return {};
-    const double width = std::ceil(std::sqrt(1 / std::max(samples_a_pixel, 1e-9)) - 1e-9);
+Sampling affordable_sampling(const Sampling& wanted, double samples) {
+    if (samples >= wanted.cost_in_samples()) return wanted;
+    if (samples >= 2 || (samples >= 1 && wanted.most_samples > 0)) {
+        Sampling fewer = wanted;
+        fewer.antialias.reset();
+        fewer.most_samples = static_cast<int>(std::min(samples, wanted.samples_a_pixel()));
+        while (fewer.feature_rays() > 0 && fewer.cost_in_samples() > samples)
+            --fewer.most_samples;
+        if (fewer.feature_rays() > 0) return fewer;
+        for (Sampling thin{.most_samples = 2, .noise_255 = wanted.noise_255, .denoise = true, .sparse = 2};
+             wanted.denoise && thin.sparse <= 4; thin.sparse *= 2)
+            if (thin.cost_in_samples() <= samples) return thin;
+        fewer.denoise = false;
+        fewer.most_samples = static_cast<int>(samples);
+        return fewer;
+    }
+    if (samples >= 1) return {};
+    const double width = std::ceil(std::sqrt(1 / std::max(samples, 1e-9)) - 1e-9);
     return {.block = static_cast<int>(std::min<double>(width, coarsest_block))};
 }
 
 double loss_of_samples(const Sampling& wanted, const Sampling& had) {
-    const double want = wanted.samples_a_pixel(), have = had.samples_a_pixel();
+    const double want = wanted.samples_a_pixel();
+    double have = had.samples_a_pixel();
+    if (wanted.denoise && !had.denoise) have /= worth_of_denoising;
     const double in_pixel = std::max(have, 1.0);
     const double loss_of_block = loss_of_pixels * std::log2(had.block);
     if (!(want > in_pixel)) return loss_of_block;

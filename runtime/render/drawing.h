@@ -34,7 +34,9 @@ class Drawing {
     const NativeReport& report() const { return report_; }
 
   private:
-    Status look(const TraceModel& model, const Sampling& sampling);
+    Status look(const TraceModel& model, const Sampling& sampling, bool last = false);
+    bool denoise(PictureTracer& tracer, const Sampling& sampling, const Film& film);
+    TraceControl control_by(const Workers& workers) const;
     bool has_room_for_samples() const;
     std::size_t pixels() const { return window_.pixels(); }
     /// A picture that is cut short is finer than the one that is there.

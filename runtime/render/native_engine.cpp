@@ -34,6 +34,7 @@ struct Asked {
 /// "4 samples per pixel", "1 sample per pixel", "1 sample per 8x8 pixels"
 std::string samples_text(double a_pixel) {
     if (a_pixel > 0 && a_pixel < 1) {
+        if (a_pixel == 0.5) return "1 sample per 2 pixels";
         const double block = std::round(std::sqrt(1 / a_pixel));
         return fmt::format("1 sample per {0:g}x{0:g} pixels", block);
     }
@@ -163,6 +164,7 @@ std::string in_words(const NativeReport& report, std::string_view device) {
     if (report.error_px > 0) text += fmt::format(", error {:.3g} px", report.error_px);
     if (const std::optional<double> noise = report.rays.noise_255())
         text += fmt::format(", noise {:.2g} of 255", *noise);
+    if (report.no_room_to_denoise) text += " (there was no memory to denoise it)";
     text += device.empty() ? fmt::format(" in {:.2f} s", report.seconds)
                            : fmt::format(" in {:.3g} s on {}", report.seconds, device);
     text += fmt::format(", {}", rays_text(report.rays, report.seconds));
@@ -300,7 +302,10 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     const Graph& graph = prepared.viewed->model->graph;
     const View& view = prepared.viewed->view;
     if (options.fit) return trace_fitted(prepared, options, preparing, cancel, compilation);
-    const PicturePlan plan = plan_picture(prepared, options);
+    PicturePlan plan = plan_picture(prepared, options);
+    // The edges of a part would differ from those of the whole. Coverage, which is never denoised, must fit the
+    // light of a transparent picture.
+    if (options.tile || (options.compile.view.transparent && !options.denoise)) plan.wanted.denoise = false;
     FileFilm file(options, prepared.prepared->cut);
     Drawing drawing(view, options, options.film ? *options.film : file, cancel);
     const double seconds_before = preparing.seconds();
@@ -357,7 +362,8 @@ std::optional<PictureFit> fit_natively(PictureSession& session, const RenderOpti
     PreparedView model;
     if (!prepare_view(session, options, model, compilation)) return std::nullopt;
     const CancelFlag cancel = session.control().cancel;
-    const PicturePlan plan = plan_picture(model, options);
+    PicturePlan plan = plan_picture(model, options);
+    plan.wanted.denoise = false; // the picture is drawn in parts
     const std::optional<FittedModel> fitted =
         fit_picture(model, options, plan, WorkerThreads(options.threads), [&] { return cancel.raised(); });
     if (!fitted) {

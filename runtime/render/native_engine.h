@@ -18,6 +18,7 @@ struct NativeReport {
     TraceStatistics rays;
     double seconds = 0;               ///< of tracing
     double first_picture_seconds = 0; ///< from the beginning of the call until a picture was there
+    bool no_room_to_denoise = false;
     double samples_a_pixel = 0;       ///< of the picture that is there, all over
     bool fewer_where_calm = false;    ///< a pixel has fewer samples where they agree
     double error_px = 0;              ///< of culled parts; 0 where none are

@@ -114,6 +114,9 @@ bool ProgressivePicture::step(const std::function<bool()>& cancelled, const std:
         if (trace(cancelled, listener) && next_window_ == (whole_.empty() ? windows_ : whole_).size())
             end_pass(listener);
         return true;
+    case Phase::denoise:
+        denoise_next(cancelled, listener);
+        return true;
     case Phase::done:
         break;
     }
@@ -226,9 +229,7 @@ void ProgressivePicture::end_pass(const PictureListener& listener) {
         rough_seconds_a_sample_ = seconds_a_sample_;
         plan_rough();
     } else if (queue_.empty()) {
-        phase_ = Phase::done;
-        for (Window& window : windows_)
-            window.meters = {};
+        finish();
     } else {
         const double before = sampling_->most_samples > 0 ? sampling_->samples_a_pixel() : 0;
         const Sampling& last = queue_.front();
@@ -238,6 +239,73 @@ void ProgressivePicture::end_pass(const PictureListener& listener) {
         queue_.pop_back();
     }
     shown.done = phase_ == Phase::done;
+    listener.on_pass(shown);
+}
+
+/// The last pass is there, but for its noise.
+void ProgressivePicture::finish() {
+    if (phase_ == Phase::fine && sampling_->feature_rays() > 0) {
+        phase_ = Phase::denoise;
+        next_window_ = 0;
+        return;
+    }
+    phase_ = Phase::done;
+    for (Window& window : windows_)
+        window.meters = {}, window.features = {};
+}
+
+/// Traces the features of the next window, or denoises the picture after the last.
+void ProgressivePicture::denoise_next(const std::function<bool()>& cancelled,
+                                      const PictureListener& listener) {
+    if (next_window_ == windows_.size()) {
+        denoise_all(cancelled, listener);
+        return;
+    }
+    Window& window = windows_[next_window_];
+    window.features.resize(window.tile.pixels());
+    TraceControl control;
+    control.workers = &workers_();
+    control.cancelled = cancelled;
+    PictureTracer tracer(*fitted_.model, limits_of(*prepared_.prepared, view(), wishes_));
+    if (tracer.trace_features(sampling_->feature_rays(), control, window.tile, window.features))
+        ++next_window_;
+}
+
+void ProgressivePicture::denoise_all(const std::function<bool()>& cancelled,
+                                     const PictureListener& listener) {
+    const ImageSize size = view().size;
+    const auto width = static_cast<std::size_t>(size.width);
+    std::vector<NoiseMeter> meters(width * static_cast<std::size_t>(size.height));
+    std::vector<PixelFeatures> features(meters.size());
+    const auto for_rows = [&](const Window& window, const auto& copy) {
+        for (int y = 0; y < window.tile.height; ++y)
+            copy(std::ptrdiff_t{y} * window.tile.width,
+                 std::ptrdiff_t{window.tile.y + y} * size.width + window.tile.x);
+    };
+    for (const Window& window : windows_)
+        for_rows(window, [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+            std::copy_n(window.meters.begin() + from, window.tile.width, meters.begin() + to);
+            std::copy_n(window.features.begin() + from, window.tile.width, features.begin() + to);
+        });
+    const CancelFlag cancel(cancelled);
+    const Denoised denoised =
+        denoise(meters, features, size.width, size.height, view().film, workers_(), cancel);
+    if (cancel.raised()) return;
+    for (const Window& window : windows_) {
+        Image picture = image_of(window.tile.width, window.tile.height);
+        for_rows(window, [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+            std::copy_n(denoised.picture.pixels.begin() + 3 * to, 3 * window.tile.width,
+                        picture.pixels.begin() + 3 * from);
+        });
+        show(window, picture, listener);
+    }
+    finish();
+    ShownPass shown;
+    shown.pass = pass_++;
+    shown.samples = sampling_->samples_a_pixel();
+    shown.noise_255 = denoised.mean_error_255();
+    if (fitted_.model->options.culls()) shown.error_px = fitted_.model->projection.error_px();
+    shown.done = true;
     listener.on_pass(shown);
 }
 

@@ -71,11 +71,12 @@ class ProgressivePicture {
     const TraceModel* model() const { return fitted_.model ? fitted_.model.get() : rough_.get(); }
 
   private:
-    enum class Phase { begin, rough, fit, fine, done };
+    enum class Phase { begin, rough, fit, fine, denoise, done };
 
     struct Window {
         Tile tile;
-        std::vector<NoiseMeter> meters; ///< where light is sampled; empty before
+        std::vector<NoiseMeter> meters;      ///< where light is sampled; empty before
+        std::vector<PixelFeatures> features; ///< where it is denoised
     };
 
     void begin(const std::function<bool()>& cancelled, const std::function<bool()>& for_good);
@@ -83,6 +84,9 @@ class ProgressivePicture {
     void fit(const std::function<bool()>& for_good);
     bool trace(const std::function<bool()>& cancelled, const PictureListener& listener);
     void end_pass(const PictureListener& listener);
+    void denoise_next(const std::function<bool()>& cancelled, const PictureListener& listener);
+    void denoise_all(const std::function<bool()>& cancelled, const PictureListener& listener);
+    void finish();
     void plan_rough();
     void plan_fine();
     void start_pass(const Sampling& sampling);

@@ -41,6 +41,48 @@ int steps_of(const Sampling& sampling) {
     return sampling.antialias ? 1 << (*sampling.antialias - 1) : 1;
 }
 
+/// Features of the pixels of a tile, by rays that each counts for the nine pixels around it.
+class FeatureSums {
+  public:
+    explicit FeatureSums(const Tile& tile) : tile_(tile), sums_(tile.pixels()), weights_(tile.pixels()) {}
+
+    void add(const glm::dvec2& place, const PixelFeatures& features) {
+        const glm::ivec2 first = glm::ivec2(glm::floor(place)) - 1;
+        const Tile around = common({first.x, first.y, 3, 3}, tile_);
+        std::array<float, 3> across{};
+        for (std::size_t i = 0; i < across.size(); ++i)
+            across[i] = static_cast<float>(PixelFilter::weight(place.x - first.x - static_cast<double>(i) - 0.5));
+        for (int y = around.y; y < around.y + around.height; ++y) {
+            const auto down = static_cast<float>(PixelFilter::weight(place.y - y - 0.5));
+            for (int x = around.x; x < around.x + around.width; ++x) {
+                const float weight = across[static_cast<std::size_t>(x - first.x)] * down;
+                const std::size_t i = index(x, y);
+                weights_[i] += weight;
+                for (std::size_t n = 0; n < features.size(); ++n)
+                    sums_[i][n] += weight * features[n];
+            }
+        }
+    }
+
+    PixelFeatures mean(int x, int y) const {
+        PixelFeatures mean = sums_[index(x, y)];
+        const float weight = weights_[index(x, y)];
+        for (float& value : mean)
+            value = weight > 0 ? value / weight : 0;
+        return mean;
+    }
+
+  private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y - tile_.y) * static_cast<std::size_t>(tile_.width) +
+               static_cast<std::size_t>(x - tile_.x);
+    }
+
+    Tile tile_;
+    std::vector<PixelFeatures> sums_;
+    std::vector<float> weights_;
+};
+
 /// One thread's tools, and what it keeps for their memory.
 class Worker {
   public:
@@ -60,6 +102,48 @@ class Worker {
         if (sampling.most_samples > 0) return trace_samples(sampling, seen, picture);
         if (!sampling.antialias) return trace_blocks(1, seen, picture);
         return trace_lattice(steps_of(sampling), seen, picture);
+    }
+
+    /// The features of the tile's pixels, each by rays through its square and the eight around it.
+    bool trace_features(int rays, const Tile& tile, const Tile& window,
+                        std::vector<PixelFeatures>& features) {
+        window_ = window;
+        FeatureSums sums(tile);
+        const Tile around = common({tile.x - 1, tile.y - 1, tile.width + 2, tile.height + 2}, whole_of(view_.size));
+        std::array<Ray, Surfaces::most_together> ahead;
+        std::array<glm::dvec2, Surfaces::most_together> places;
+        std::vector<SampleStream> randoms(ahead.size(), SampleStream(0, 0));
+        std::size_t count = 0;
+        const auto look = [&] {
+            shader_.look_ahead(std::span(ahead).first(count), ahead_);
+            for (std::size_t i = 0; i < count; ++i) {
+                ++camera_rays_;
+                SurfaceHit met;
+                traversal_.begin_path();
+                PixelFeatures seen{};
+                if (shader_.first_hit(ahead[i], met, ahead_, i))
+                    seen = features_of(AovSample(met, ahead[i], view_),
+                                       shader_.light_of_lamps(ahead[i], met, randoms[i]));
+                sums.add(places[i], seen);
+            }
+            count = 0;
+        };
+        for (int y = around.y; y < around.y + around.height; ++y)
+            for (int x = around.x; x < around.x + around.width; ++x)
+                for (int i = 0; i < rays; ++i) {
+                    if (cancelled()) return false;
+                    SampleStream random(seed_of(x, y) ^ of_features, static_cast<std::uint32_t>(i));
+                    places[count] = glm::dvec2(x, y) + random.next();
+                    const Sight seen = sight(places[count].x, places[count].y, random);
+                    ahead[count] = seen.ray;
+                    randoms[count] = seen.random;
+                    if (++count == ahead.size()) look();
+                }
+        look();
+        for (int y = tile.y; y < tile.y + tile.height; ++y)
+            for (int x = tile.x; x < tile.x + tile.width; ++x)
+                features[index_in_window(x, y)] = sums.mean(x, y);
+        return true;
     }
 
     /// trace(), through points of the whole picture.
@@ -91,6 +175,35 @@ class Worker {
         SampleStream random;
     };
 
+    static constexpr int together = Surfaces::most_together;
+
+    /// A ray near the pixel's middle, as often in each place as the filter weighs it.
+    Sight through_filter(int x, int y, SampleStream random) const {
+        const glm::dvec2 offset = offset_of(random);
+        return sight(x + 0.5 + offset.x, y + 0.5 + offset.y, random);
+    }
+
+    static glm::dvec2 offset_of(SampleStream& random) {
+        static const PixelFilter filter;
+        const glm::dvec2 place = random.next();
+        return {filter.offset(place.x), filter.offset(place.y)};
+    }
+
+    /// Nearness is a linear measure in the picture: on a plane, and where pixels mix.
+    PixelFeatures features_of(const AovSample& sample, const Rgb& light) const {
+        if (!sample.met) return {};
+        const double near = view_.camera.orthographic ? -sample.depth : 1 / sample.depth;
+        PixelFeatures features{1};
+        for (int c = 0; c < 3; ++c) {
+            features[static_cast<std::size_t>(1 + c)] = static_cast<float>(sample.albedo[c]);
+            features[static_cast<std::size_t>(4 + c)] = static_cast<float>(sample.normal[c]);
+        }
+        features[near_feature] = static_cast<float>(near);
+        const double grey = (light.x + light.y + light.z) / 3;
+        features[light_feature] = static_cast<float>(std::isfinite(grey) ? grey : 0);
+        return features;
+    }
+
     Sight sight(double x, double y, SampleStream random) const {
         if (!rays_.has_lens()) return {rays_.through(x, y), random};
         const glm::dvec2 place = random.next();
@@ -107,7 +220,6 @@ class Worker {
     /// Looks through `count` points, neighbours together: sight_of(i) is the i-th, and take(i, light) gets
     /// its light, in order, and says whether to go on. False if it was cancelled.
     template<class SightOf, class Take> bool look(int count, const SightOf& sight_of, const Take& take) {
-        constexpr int together = Surfaces::most_together;
         std::array<Ray, Surfaces::most_together> rays;
         std::vector<SampleStream>& randoms = randoms_;
         bool more = true;
@@ -194,11 +306,14 @@ class Worker {
 
     /// Pixel by pixel, each by itself, so that it depends on its place in the picture alone.
     bool trace_samples(const Sampling& sampling, const Tile& tile, Image& picture) {
-        static const PixelFilter filter;
         for (int y = tile.y; y < tile.y + tile.height; ++y)
             for (int x = tile.x; x < tile.x + tile.width; ++x) {
-                const auto seed = (static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x)) ^
-                                  control_.sequence << 48;
+                if (!has_samples(sampling, x, y)) continue;
+                const std::uint64_t seed = seed_of(x, y);
+                const auto stream = [&](int number) {
+                    return sampling.denoise ? half_stream(seed, number)
+                                            : SampleStream(seed, static_cast<std::uint32_t>(number));
+                };
                 NoiseMeter fresh;
                 NoiseMeter& meter = control_.samples ? (*control_.samples)[index_in_window(x, y)] : fresh;
                 const auto is_calm = [&] {
@@ -209,19 +324,11 @@ class Worker {
                 bool calm = is_calm();
                 const int before = static_cast<int>(meter.count());
                 const int more = calm ? 0 : sampling.most_samples - before;
-                const auto offset_of = [&](SampleStream& random) {
-                    const glm::dvec2 place = random.next();
-                    return glm::dvec2(filter.offset(place.x), filter.offset(place.y));
-                };
-                const auto sample = [&](int i) {
-                    SampleStream random(seed, static_cast<std::uint32_t>(before + i));
-                    const glm::dvec2 offset = offset_of(random);
-                    return sight(x + 0.5 + offset.x, y + 0.5 + offset.y, random);
-                };
+                const auto sample = [&](int i) { return through_filter(x, y, stream(before + i)); };
                 const bool whole = look(more, sample, [&](int i, const Rgb& rgb) {
                     meter.add(rgb);
                     if (aovs_) {
-                        SampleStream random(seed, static_cast<std::uint32_t>(before + i));
+                        SampleStream random = stream(before + i);
                         const glm::dvec2 offset = offset_of(random);
                         sum.add(seen_, 1, glm::dot(offset, offset));
                     }
@@ -235,6 +342,25 @@ class Worker {
                 if (aovs_) set(x, y, sum);
             }
         return true;
+    }
+
+    static bool has_samples(const Sampling& sampling, int x, int y) {
+        return sampling.sparse == 1 || ((x + y) % 2 == 0 && (sampling.sparse == 2 || x % 2 == 0));
+    }
+
+    std::uint64_t seed_of(int x, int y) const {
+        return (static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x)) ^ control_.sequence
+                                                                                           << 48;
+    }
+
+    /// Bits of seeds that no pixel's number sets.
+    static constexpr std::uint64_t second_half = 1ull << 31, of_features = 1ull << 30;
+
+    /// Every second sample is of a sequence of its own, so that the halves of a pixel's samples tell its
+    /// noise. Their mean has a little more of it.
+    static SampleStream half_stream(std::uint64_t seed, int number) {
+        const auto index = static_cast<std::uint32_t>(number);
+        return {index % 2 == 0 ? seed : seed ^ second_half, index / 2};
     }
 
     void note_noise(const NoiseMeter& meter) {
@@ -332,9 +458,19 @@ std::vector<Tile> tiles_of(ImageSize size, int block, const Tile& window) {
 } // namespace
 
 double Sampling::samples_a_pixel() const {
-    if (block == 1 && most_samples > 0) return most_samples;
+    if (block == 1 && most_samples > 0) return static_cast<double>(most_samples) / sparse;
     const double steps = steps_of(*this);
     return steps * steps / (static_cast<double>(block) * block);
+}
+
+int Sampling::feature_rays() const {
+    constexpr int enough = 4;
+    return denoise && most_samples >= 2 ? std::min(most_samples / 2, enough) : 0;
+}
+
+double Sampling::cost_in_samples() const {
+    constexpr double share_of_sample = 0.5;
+    return samples_a_pixel() + share_of_sample * feature_rays();
 }
 
 TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
@@ -394,6 +530,14 @@ bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control,
         const std::lock_guard lock(telling);
         control.on_tile(common(tiles[number], window));
         return true;
+    });
+}
+
+bool PictureTracer::trace_features(int rays, const TraceControl& control, const Tile& window,
+                                   std::vector<PixelFeatures>& features) {
+    const std::vector<Tile> tiles = tiles_of(model_.view.size, 1, window);
+    return run(tiles.size(), control, [&](Worker& worker, std::uint64_t number) {
+        return worker.trace_features(rays, common(tiles[number], window), window, features);
     });
 }
 

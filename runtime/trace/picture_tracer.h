@@ -8,6 +8,7 @@
 #include "compiler/support/workers.h"
 #include "runtime/image/image.h"
 #include "runtime/trace/aovs.h"
+#include "runtime/trace/denoise.h"
 #include "runtime/trace/model/trace_model.h"
 #include "runtime/trace/noise_meter.h"
 #include "runtime/trace/shade/shade.h"
@@ -23,9 +24,15 @@ struct Sampling {
         antialias;        ///< with blocks of 1: POV-Ray's samples by +A0.0 +AM2 +R<depth> -J, else one
     int most_samples = 0; ///< with blocks of 1: samples through a filter, in place of a lattice
     double noise_255 = 0; ///< fewer, where the error of a pixel is below this, in 255ths as it is shown
+    bool denoise = false; ///< takes noise out of two samples or more (denoise.h)
+    int sparse = 1;       ///< where noise is taken out: one pixel of 1, 2 or 4 has samples
 
     /// Rays through a pixel, those that neighbours share counted once.
     double samples_a_pixel() const;
+    /// Rays without light by which a pixel is denoised; 0 where it is not.
+    int feature_rays() const;
+    /// What the rays of a pixel take, in samples.
+    double cost_in_samples() const;
     bool operator==(const Sampling&) const = default;
 };
 
@@ -75,6 +82,11 @@ class PictureTracer {
     /// `picture` and `aovs` hold nothing else. Requires a window that lies in the view.
     bool trace(const Sampling& sampling, const TraceControl& control, const Tile& window, Image& picture,
                AovPicture* aovs = nullptr);
+
+    /// The mean features of each pixel of a window, by so many rays from the camera through the square of
+    /// each pixel. False if it was cancelled.
+    bool trace_features(int rays, const TraceControl& control, const Tile& window,
+                        std::vector<PixelFeatures>& features);
 
     /// Traces the camera rays number `begin` to `end` of a sequence that covers the picture evenly at any
     /// length, and each side of it: what is thin is met as often as its share of the picture says, too (the

@@ -15,6 +15,9 @@ class PixelFilter {
     /// Offset from the pixel's middle along one axis, in pixels, for u in [0, 1).
     double offset(double u) const;
 
+    /// The window's value at an offset along one axis, 1 in its middle.
+    static double weight(double offset);
+
     static constexpr int steps = 256;
     /// Offsets for u = 0, 1 / steps, ... 1, between which others are interpolated.
     const std::array<double, steps + 1>& offsets() const { return offset_of_; }

@@ -27,6 +27,19 @@ Rgb Shader::lit(const Point& point, bool sky_later, SampleStream& random) {
     const double least = least_distance(point.position, shadow_pixels);
     Rgb sum = point.body * point.material->ambient * ambient_light_ * point.rgb;
     if (point.material->emission > 0) sum += point.body * point.material->emission * point.rgb;
+    Rgb shining = of_lamps(point, least, random);
+    if (sky_) shining += from_sky(point, least, sky_later, random);
+    return sum + point.shone_on * shining;
+}
+
+Rgb Shader::light_of_lamps(const Ray& ray, const SurfaceHit& first, SampleStream& random) {
+    if (lamps_.empty() && areas_.empty()) return Rgb(0.0);
+    const Inside& inside = camera_inside_;
+    const Point point = point_of(ray, inside, first, random);
+    return point.shone_on * of_lamps(point, least_distance(point.position, shadow_pixels), random);
+}
+
+Rgb Shader::of_lamps(const Point& point, double least, SampleStream& random) {
     Rgb shining(0.0);
     for (const Lamp& lamp : lamps_)
         shining += light_of(lamp, point, least);
@@ -43,8 +56,7 @@ Rgb Shader::lit(const Point& point, bool sky_later, SampleStream& random) {
         if (part.sun) part.at = glm::normalize(part.at);
         shining += light_of(part, point, least);
     }
-    if (sky_) shining += from_sky(point, least, sky_later, random);
-    return sum + point.shone_on * shining;
+    return shining;
 }
 
 /// `shine_only`: without what is scattered.

@@ -141,8 +141,8 @@ void Shader::look_ahead(std::span<const Ray> rays, Ahead& ahead) {
 
 Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Ahead& ahead,
                      std::size_t number) {
-    const Known known{ahead.met >> number & 1 ? &ahead.hits[number] : nullptr};
-    return radiance(ray, random, first, &known);
+    const Known found = known(ahead, number);
+    return radiance(ray, random, first, &found);
 }
 
 Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Known* known) {
@@ -181,7 +181,7 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Kn
         }
         if (caught > 0) {
             path.weight *= path.inside.left_after(hit.t);
-            const Point point = point_of(path, hit, random);
+            const Point point = point_of(path.ray, path.inside, hit, random);
             sum += caught * path.weight * lit(point, false, random);
             path.weight *= 1 - caught;
             path.counts *= 1 - caught;
@@ -196,7 +196,7 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Kn
             break;
         }
         path.weight *= path.inside.left_after(hit.t);
-        const Point point = point_of(path, hit, random);
+        const Point point = point_of(path.ray, path.inside, hit, random);
         const double scattered = path.bounces < bounces_ ? scattered_by(point) : 0;
         // A ray that finds either a surface or the sky tells more than one for each.
         const bool sky_later = !bright_sky_ && path.counts * scattered >= limits_.least_weight;
@@ -282,6 +282,11 @@ bool Shader::first_hit(const Ray& ray, SurfaceHit& hit) {
     return closest(ray, {}, hit);
 }
 
+bool Shader::first_hit(const Ray& ray, SurfaceHit& hit, const Ahead& ahead, std::size_t number) {
+    const Known found = known(ahead, number);
+    return closest(ray, {}, hit, &found);
+}
+
 bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit, const Known* known) {
     range.most = std::min(range.most, limits_.farthest);
     if (known && known->hit) hit = *known->hit;
@@ -338,10 +343,11 @@ bool Shader::is_blurred(const Material& material) const {
     return material.is_blurred() && !limits_.list;
 }
 
-Shader::Point Shader::point_of(const Path& path, const SurfaceHit& hit, SampleStream& random) const {
+Shader::Point Shader::point_of(const Ray& ray, const Inside& inside, const SurfaceHit& hit,
+                               SampleStream& random) const {
     Vec3 normal = hit.normal;
-    if (glm::dot(hit.normal, path.ray.direction) > 0) normal = -hit.normal;
-    Point point{path.ray(hit.t), normal, normal, -path.ray.direction, hit.rgb, hit.material, &path.inside};
+    if (glm::dot(hit.normal, ray.direction) > 0) normal = -hit.normal;
+    Point point{ray(hit.t), normal, normal, -ray.direction, hit.rgb, hit.material, &inside};
     if (is_blurred(*hit.material))
         point.facet = formulas::visible_facet(normal, point.to_viewer, hit.material->blur, random.next());
     // Exactly on the ground, its own shadow cannot begin on the way to a low sun.

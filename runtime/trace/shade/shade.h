@@ -92,6 +92,10 @@ class Shader {
 
     /// The first surface that the ray meets, the ground included; false if that is the sky.
     bool first_hit(const Ray& ray, SurfaceHit& hit);
+    /// first_hit() of one of the rays that look_ahead() was asked for, by its number.
+    bool first_hit(const Ray& ray, SurfaceHit& hit, const Ahead& ahead, std::size_t number);
+    /// The light of the lamps, not of the sky, that comes along the ray from the first surface.
+    Rgb light_of_lamps(const Ray& ray, const SurfaceHit& first, SampleStream& random);
 
   private:
     struct Lamp {
@@ -114,6 +118,9 @@ class Shader {
     struct Known {
         const SurfaceHit* hit;
     };
+    static Known known(const Ahead& ahead, std::size_t number) {
+        return {ahead.met >> number & 1 ? &ahead.hits[number] : nullptr};
+    }
     Rgb radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, const Known* known);
     bool closest(const Ray& ray, RayRange range, SurfaceHit& hit, const Known* known = nullptr);
     /// Where and how the ground is met; false beyond the range, along it, and where its picture is clear.
@@ -123,8 +130,9 @@ class Shader {
     const Texture::Texel& ground_texel(Vec3 point) const;
     /// Whether the surface mirrors and refracts by facets: of the list of lights, POV-Ray's are sharp.
     bool is_blurred(const Material& material) const;
-    Point point_of(const Path& path, const SurfaceHit& hit, SampleStream& random) const;
+    Point point_of(const Ray& ray, const Inside& inside, const SurfaceHit& hit, SampleStream& random) const;
     void share_light(Point& point) const;
+    Rgb of_lamps(const Point& point, double least, SampleStream& random);
     Rgb lit(const Point& point, bool sky_later, SampleStream& random);
     Rgb from_sky(const Point& point, double least, bool shine_only, SampleStream& random);
     Rgb sky_light(double front_chance, const Point& point, double body, Vec3 direction, double least);

@@ -9,6 +9,7 @@ namespace {
 
 const Sampling edges{.antialias = 3}; // 16 samples
 const Sampling light{.most_samples = 64, .noise_255 = 3};
+const Sampling denoised{.most_samples = 64, .noise_255 = 3, .denoise = true};
 constexpr Sampling one_a_pixel{};
 
 TEST(Samplings, AsManySamplesAsAreAffordable) {
@@ -22,7 +23,7 @@ TEST(Samplings, AsManySamplesAsAreAffordable) {
 }
 
 TEST(Samplings, PixelsShareSamplesWhereEachTakesLong) {
-    for (const Sampling& wanted : {edges, light, one_a_pixel}) {
+    for (const Sampling& wanted : {edges, light, denoised, one_a_pixel}) {
         EXPECT_EQ(affordable_sampling(wanted, 0.99).block, 2);
         EXPECT_EQ(affordable_sampling(wanted, 0.25).block, 2);
         EXPECT_EQ(affordable_sampling(wanted, 0.2).block, 3);
@@ -31,15 +32,32 @@ TEST(Samplings, PixelsShareSamplesWhereEachTakesLong) {
 }
 
 TEST(Samplings, NeverTakeMoreThanIsAffordable) {
-    for (const Sampling& wanted : {edges, light, one_a_pixel})
+    for (const Sampling& wanted : {edges, light, denoised, one_a_pixel})
         for (double samples = 1.0 / (coarsest_block * coarsest_block); samples < 100; samples *= 1.07)
-            EXPECT_LE(affordable_sampling(wanted, samples).samples_a_pixel(), samples * (1 + 1e-12));
+            EXPECT_LE(affordable_sampling(wanted, samples).cost_in_samples(), samples * (1 + 1e-12));
+}
+
+/// Rays for features cost half a sample each, and are one for two samples up to four.
+TEST(Samplings, FewSamplesAreDenoisedBeforeAllPixelsHaveThem) {
+    const auto at = [](double samples) { return affordable_sampling(denoised, samples); };
+    EXPECT_EQ(at(66), denoised);
+    EXPECT_EQ(at(65).most_samples, 63);
+    EXPECT_EQ(at(10).most_samples, 8);
+    EXPECT_EQ(at(2.5).most_samples, 2);
+    EXPECT_EQ(at(2.5).sparse, 1);
+    EXPECT_EQ(at(2.4).most_samples, 2);
+    EXPECT_EQ(at(2.4).sparse, 2);
+    EXPECT_EQ(at(1.4).sparse, 4);
+    EXPECT_EQ(at(1.4).samples_a_pixel(), 0.5);
+    EXPECT_EQ(at(0.99).block, 2);
+    for (const double samples : {1.0, 1.5, 2.0, 7.0, 64.0})
+        EXPECT_TRUE(at(samples).denoise) << samples;
 }
 
 /// Fewer samples never look better, and no step is a cliff: one sample less costs less than parts twice as
 /// large.
 TEST(Samplings, LossGrowsEvenly) {
-    for (const Sampling& wanted : {edges, light, one_a_pixel}) {
+    for (const Sampling& wanted : {edges, light, denoised, one_a_pixel}) {
         EXPECT_EQ(loss_of_samples(wanted, wanted), 0);
         double last = 0;
         for (double samples = 70; samples > 0.02; samples *= 0.97) {

@@ -130,11 +130,14 @@ class Baker {
     }
 
     void gather_leaves() {
+        const Control control{request_.cancel, {}};
+        WorkMeter meter(control, "bake", leaves_a_look);
         PlacedSet seen(cut_.nodes[request_.representative].ball.radius, expected_leaves());
         LeafWalk walk(cut_, symmetry_, request_, std::span(request_.painters).first(1));
         WalkedLeaf leaf;
         std::size_t triangles = 0;
         for (std::uint64_t number = 0; walk.next(leaf); ++number) {
+            meter.add();
             baked_.visits =
                 walk.visits() + visits_of_widening * widened_ + visits_of_keeping * numbers_.size();
             if (baked_.visits > request_.most_visits) {
@@ -313,6 +316,8 @@ class Baker {
         return level;
     }
 
+    static constexpr std::uint64_t leaves_a_look = 1 << 10;
+
     const CutGraph& cut_;
     const Symmetry& symmetry_;
     const BakeRequest& request_;
@@ -342,6 +347,7 @@ Baked bake(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& req
     shell.most_work = std::min(shell.most_work, request.most_shell_work);
     shell.material = request.material;
     shell.store = request.shells;
+    shell.cancel = request.cancel;
     for (const Painter& painter : request.painters)
         shell.inherited.push_back(painter.inherited);
     return bake_shell(cut, shell, max_triangles);

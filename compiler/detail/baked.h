@@ -9,6 +9,7 @@
 #include "compiler/detail/graph/cut_graph.h"
 #include "compiler/detail/mesh/mesh.h"
 #include "compiler/detail/self_shadow.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -43,6 +44,7 @@ struct BakeRequest {
     ShellStore* shells = nullptr;           ///< where its points are kept; none: they are made anew
     bool pictures = true;                   ///< else what has a texture shows its material's colour
     std::uint64_t most_visits = UINT64_MAX; ///< of the walk through the subtree
+    CancelFlag cancel{};                    ///< ends it by Cancelled
 };
 
 /// The triangles of one finish, and what each painter's colours are.

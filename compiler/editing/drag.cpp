@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "compiler/editing/rounding.h"
 #include "compiler/graph/run.h"
 #include "compiler/languages/lower.h"
 #include "compiler/lsys/parse/turtle_command.h"
@@ -267,31 +268,22 @@ class Dragger {
             if (!(glm::length(slope) > 0)) break;
         }
         if (!(glm::distance(way, wanted_) < (1 - least_gain) * glm::length(wanted_))) return std::nullopt;
-        const std::string number = readable(candidate, value, slope);
+        const double read = rounded(value, decimals(slope));
         DragChange change;
-        change.edits = {{candidate.span.begin, candidate.span.end, number}};
+        change.edits = {{candidate.span.begin, candidate.span.end, written(candidate, read, sure_digits)}};
         change.number = candidate.span.begin;
-        change.point = part_.from + way;
-        change.says =
-            fmt::format("line {}: {} became {}", document_.sources().position(0, candidate.span.begin).line,
-                        document_.text(candidate.span), number);
+        change.point = part_.from + way + (read - value) * slope;
         return change;
     }
 
-    /// With as few digits as the hand can tell.
-    std::string readable(const Candidate& candidate, double value, Vec3 slope) const {
+    /// As many as the hand can tell.
+    int decimals(Vec3 slope) const {
         constexpr double noticed = 0.02; // of the way
-        for (int digits = fewest_digits; digits < all_digits; ++digits) {
-            std::string number;
-            append_number(number, value, digits);
-            const double off = std::abs(parse_number(number).value_or(value) - value);
-            if (off * glm::length(slope) <= noticed * glm::length(wanted_))
-                return written(candidate, value, digits);
-        }
-        return written(candidate, value, all_digits);
+        const double grain = part_.grain > 0 ? part_.grain : noticed * glm::length(wanted_);
+        return decimals_for([&](double off) { return off * glm::length(slope) <= grain; });
     }
 
-    static constexpr int fewest_digits = 3, all_digits = 17;
+    static constexpr int all_digits = 17, sure_digits = 15;
 
     const Document& document_;
     const DraggedPart& part_;

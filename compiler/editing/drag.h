@@ -18,12 +18,12 @@ struct DraggedPart {
     Vec3 from{0.0};                        ///< a point of the part, or near it
     Vec3 to{0.0};                          ///< where it is wanted
     std::optional<std::uint32_t> number{}; ///< first byte of the number to change; nothing: the best one
+    double grain = 0;                      ///< a length that the hand can tell; 0: a fiftieth of the way
 };
 
 struct DragChange {
     std::vector<TextEdit> edits; ///< one number; empty where it is refused
     std::string refusal;         ///< "": the text changes
-    std::string says;            ///< what changes, in plain words
     std::uint32_t number = 0;    ///< first byte of the number
     Vec3 point{0.0};             ///< where the point lies after the change
 };

@@ -299,6 +299,7 @@ class Fitting {
             return ask_.options.culls() && shell_seconds(model) > most_shells;
         };
         control.cancelled = [&] { return cancel_.raised() || too_many_shells(); };
+        control.for_good = cancel_;
         if (ask_.options.culls())
             model.meshes.make_until(static_cast<std::uint64_t>(most_shells * WorkRates::shell_points));
         tracer.probe(begin, end, control);

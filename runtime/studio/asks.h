@@ -11,6 +11,9 @@ namespace graftal {
 /// text is to be saved under its name.
 std::vector<std::string> command_words(const StudioState& state, const std::string& command);
 
+/// A number of a film. Throws BadMessage.
+double film_number(const nlohmann::json& value);
+
 /// The words that make a film of it: the field `film` of an ask (docs/studio.md). Throws BadMessage.
 std::vector<std::string> film_words(StudioState state, const nlohmann::json& film);
 

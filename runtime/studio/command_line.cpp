@@ -39,11 +39,6 @@ std::string camera_words(const CameraOverride& camera) {
     return text.empty() ? text : text.substr(1);
 }
 
-double number_in(const nlohmann::json& value) {
-    if (!value.is_number()) throw BadMessage("a film runs over numbers");
-    return value.get<double>();
-}
-
 /// Keys, each a share of the time and a value, as `--set` has them: "2..5@0.3..1".
 std::string keys_text(const std::string& name, const nlohmann::json& keys) {
     if (!keys.is_array() || keys.size() < 2)
@@ -51,7 +46,7 @@ std::string keys_text(const std::string& name, const nlohmann::json& keys) {
     std::string text;
     for (const nlohmann::json& key : keys) {
         if (!key.is_array() || key.size() != 2) throw BadMessage("a key frame is a time and a value");
-        const double t = number_in(key[0]), value = number_in(key[1]);
+        const double t = film_number(key[0]), value = film_number(key[1]);
         text += fmt::format("{}{}", text.empty() ? "" : "..", value);
         const bool is_end = &key == &keys.front() || &key == &keys.back();
         if (is_end && t != (&key == &keys.front() ? 0 : 1))
@@ -62,6 +57,11 @@ std::string keys_text(const std::string& name, const nlohmann::json& keys) {
 }
 
 } // namespace
+
+double film_number(const nlohmann::json& value) {
+    if (!value.is_number()) throw BadMessage("a film runs over numbers");
+    return value.get<double>();
+}
 
 std::vector<std::string> command_words(const StudioState& state, const std::string& command) {
     std::vector<std::string> words{"graftal", command, state.name};
@@ -109,7 +109,7 @@ std::vector<std::string> film_words(StudioState state, const nlohmann::json& fil
         state.stages.lower.steps.reset();
         state.stages.lower.time.reset();
         moving.insert(moving.end(),
-                      {"--steps", fmt::format("{}..{}", number_in((*steps)[0]), number_in((*steps)[1]))});
+                      {"--steps", fmt::format("{}..{}", film_number((*steps)[0]), film_number((*steps)[1]))});
     }
     std::vector<std::string> words = command_words(state, "animate");
     words.insert(words.end(), moving.begin(), moving.end());

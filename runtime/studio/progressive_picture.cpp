@@ -111,7 +111,8 @@ bool ProgressivePicture::step(const std::function<bool()>& cancelled, const std:
         return true;
     case Phase::rough:
     case Phase::fine:
-        if (trace(cancelled, listener) && next_window_ == (whole_.empty() ? windows_ : whole_).size())
+        if (trace(cancelled, for_good, listener) &&
+            next_window_ == (whole_.empty() ? windows_ : whole_).size())
             end_pass(listener);
         return true;
     case Phase::denoise:
@@ -143,7 +144,7 @@ void ProgressivePicture::begin(const std::function<bool()>& cancelled,
                                               ground_, cancel);
         rough_->most_visits = std::min(rough_->most_visits, rough_visits);
     }
-    if (!(seconds_a_sample_ > 0)) probe(cancelled);
+    if (!(seconds_a_sample_ > 0)) probe(cancelled, for_good);
     phase_ = Phase::rough;
     int block = usual_rough / 2;
     while (block < coarsest_rough && seconds_of({.block = block}) > soon_seconds)
@@ -151,12 +152,14 @@ void ProgressivePicture::begin(const std::function<bool()>& cancelled,
     start_pass({.block = block});
 }
 
-void ProgressivePicture::probe(const std::function<bool()>& cancelled) {
+void ProgressivePicture::probe(const std::function<bool()>& cancelled,
+                               const std::function<bool()>& for_good) {
     PictureTracer tracer(*rough_, limits_of(*prepared_.prepared, view(), wishes_));
     TraceControl control;
     control.workers = &workers_();
     const double start = clock_seconds();
     control.cancelled = [&] { return cancelled() || clock_seconds() - start > probe_seconds; };
+    control.for_good = CancelFlag(for_good);
     tracer.probe(0, probe_rays, control);
     const auto rays = static_cast<double>(std::max<std::uint64_t>(tracer.statistics().camera_rays, 1));
     seconds_a_sample_ = (clock_seconds() - start) / rays;
@@ -181,12 +184,14 @@ void ProgressivePicture::start_pass(const Sampling& sampling) {
 }
 
 /// Traces the next window. False if it was cancelled.
-bool ProgressivePicture::trace(const std::function<bool()>& cancelled, const PictureListener& listener) {
+bool ProgressivePicture::trace(const std::function<bool()>& cancelled, const std::function<bool()>& for_good,
+                               const PictureListener& listener) {
     Window& window = (whole_.empty() ? windows_ : whole_)[next_window_];
     const TraceModel& model = phase_ == Phase::rough ? *rough_ : *fitted_.model;
     TraceControl control;
     control.workers = &workers_();
     control.cancelled = cancelled;
+    control.for_good = CancelFlag(for_good);
     if (sampling_->most_samples > 0) {
         window.meters.resize(window.tile.pixels());
         control.samples = &window.meters;

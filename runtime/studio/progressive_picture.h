@@ -80,9 +80,10 @@ class ProgressivePicture {
     };
 
     void begin(const std::function<bool()>& cancelled, const std::function<bool()>& for_good);
-    void probe(const std::function<bool()>& cancelled);
+    void probe(const std::function<bool()>& cancelled, const std::function<bool()>& for_good);
     void fit(const std::function<bool()>& for_good);
-    bool trace(const std::function<bool()>& cancelled, const PictureListener& listener);
+    bool trace(const std::function<bool()>& cancelled, const std::function<bool()>& for_good,
+               const PictureListener& listener);
     void end_pass(const PictureListener& listener);
     void denoise_next(const std::function<bool()>& cancelled, const PictureListener& listener);
     void denoise_all(const std::function<bool()>& cancelled, const PictureListener& listener);

@@ -177,6 +177,8 @@ bool StudioSession::prepare(ModelSession& model, StudioState& state, PreparedVie
     StageOptions& stages = state.stages;
     stages.lower.root = home_.root();
     stages.detail.memory_bytes = home_.memory_bytes();
+    if (state.film) stages.view.framing = film_framing_.of(*state.film, *state.text, stages, *model.session);
+    if (outdated()) return false;
     prepared.viewed = model.session->viewed(stages, compilation);
     if (outdated() || !prepared.viewed) return false;
     compilation.status =

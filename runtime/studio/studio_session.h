@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "runtime/studio/film_framing.h"
 #include "runtime/studio/pointer.h"
 #include "runtime/studio/progressive_picture.h"
 #include "runtime/studio/studio_home.h"
@@ -141,6 +142,7 @@ class StudioSession {
     Compilation compilation_; ///< of the state
     std::unique_ptr<ProgressivePicture> picture_;
     Pointer pointer_;
+    FilmFraming film_framing_;
     std::shared_ptr<TraceGround> ground_; ///< of the last picture
     std::shared_ptr<const PreparedCut> ground_of_;
     bool described_ = false;      ///< the state's model was told

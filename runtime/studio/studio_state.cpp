@@ -15,8 +15,6 @@ namespace graftal {
 
 namespace {
 
-constexpr std::uint64_t most_steps = 4'000'000'000;
-
 void read_size(const MessageReader& message, ImageSize& size) {
     size.width = static_cast<int>(message.whole("width", most_page_side).value_or(960));
     size.height = static_cast<int>(message.whole("height", most_page_side).value_or(540));
@@ -127,6 +125,7 @@ StudioState read_state(const nlohmann::json& object, bool has_number) {
         state.camera = *camera;
         view.camera = read_camera(*camera);
     }
+    if (const nlohmann::json* const film = message.object("film")) state.film = *film;
     state.at = message.text("at").value_or("");
     state.zoom = message.text("zoom").value_or("");
     view.zoom = read_zoom(state.at, state.zoom);

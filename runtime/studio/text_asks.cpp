@@ -38,7 +38,8 @@ class TextAsk {
         if (what == "rename") return renamed();
         if (what == "format") return {{"edits", edits_json(format(document_))}};
         if (what == "map")
-            return change_json(move_map(document_, fields_.needed_text("name"), matrix(), asked_.context));
+            return change_json(
+                move_map(document_, fields_.needed_text("name"), matrix(), asked_.context, hand()));
         if (what == "pull") return pulled();
         if (what == "drag") return part_dragged();
         if (what == "digraph") return toggled();
@@ -116,21 +117,27 @@ class TextAsk {
     Json pulled() const {
         const std::optional<Vec3> from = fields_.vector("from"), to = fields_.vector("to");
         if (!from || !to) throw BadMessage("'from' or 'to' is missing");
-        return change_json(pull(document_, fields_.needed_text("address"), *from, *to, asked_.context));
+        return change_json(
+            pull(document_, fields_.needed_text("address"), *from, *to, asked_.context, hand()));
+    }
+
+    Hand hand() const {
+        Hand hand{std::max(0.0, fields_.number("grain").value_or(0)), {}};
+        if (asked_.model) hand.reach = asked_.model->bounds[asked_.model->graph.root].box;
+        return hand;
     }
 
     Json part_dragged() const {
         const std::optional<Vec3> from = fields_.vector("from"), to = fields_.vector("to");
         if (!from || !to) throw BadMessage("'from' or 'to' is missing");
-        DraggedPart part{instances(), *from, *to};
+        DraggedPart part{instances(), *from, *to, {}, hand().grain};
         if (const auto number = fields_.whole("number", UINT32_MAX))
             part.number = positions_.byte_of(static_cast<std::uint32_t>(*number));
         const DragChange change = drag_part(document_, part, asked_.context);
         if (!change.refusal.empty()) throw BadMessage(change.refusal);
         return {{"edits", edits_json(change.edits)},
                 {"number", positions_.utf16_of(change.number)},
-                {"point", vector_json(change.point)},
-                {"says", change.says}};
+                {"point", vector_json(change.point)}};
     }
 
     std::vector<std::uint32_t> instances() const {

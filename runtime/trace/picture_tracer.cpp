@@ -498,6 +498,7 @@ bool PictureTracer::run(std::uint64_t tasks, const TraceControl& control, const 
     const Workers& threads = control.workers ? *control.workers : static_cast<const Workers&>(alone);
     std::vector<std::unique_ptr<Worker>> workers(static_cast<std::size_t>(threads.count()));
     std::atomic<bool> complete = true;
+    model_.meshes.cancel_by(control.for_good);
     threads.for_each(tasks, [&](int thread, std::uint64_t number) {
         if (!complete) return;
         std::unique_ptr<Worker>& worker = workers[static_cast<std::size_t>(thread)];
@@ -506,7 +507,8 @@ bool PictureTracer::run(std::uint64_t tasks, const TraceControl& control, const 
     });
     for (const std::unique_ptr<Worker>& worker : workers)
         if (worker) statistics_ += worker->statistics();
-    return complete;
+    model_.meshes.cancel_by({});
+    return complete && !control.for_good.raised(); // else some shell may be missing
 }
 
 bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control, Image& picture,

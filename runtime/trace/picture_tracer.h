@@ -61,6 +61,8 @@ struct TraceControl {
     /// Asked before every ray, by all threads at once: one tile may hold millions of rays. Once it says true,
     /// no further ray is traced.
     std::function<bool()> cancelled;
+    /// Raised when nobody wants the picture any more, now or later: shells that are under way end too.
+    CancelFlag for_good{};
     /// After each whole one, with what of it lies in the window; by one thread at a time.
     std::function<void(const Tile&)> on_tile;
 };

@@ -21,7 +21,7 @@ rifs fern {
 }
 `;
 
-/** Serves `folder` and the session; gives its address and what the page told. */
+/** Serves `folder` and the session; gives its address and what the page told. With `told.delay_ms`, states are answered so late. */
 export async function serve(folder, modules, { name = 'fern.rifs', text = example } = {}) {
   const { WebSocketServer } = createRequire(path.join(modules, 'x'))('ws');
   const server = http.createServer((request, response) => {
@@ -62,6 +62,11 @@ class MockSession {
     state.text ??= this.state.text;
     this.told.states.push(state);
     this.state = state;
+    if (this.told.delay_ms) setTimeout(() => this.answer_state(state), this.told.delay_ms);
+    else this.answer_state(state);
+  }
+
+  answer_state(state) {
     const { number } = state, findings = findings_of(state.text);
     this.send({ type: 'findings', number, findings });
     if (findings.some(({ severity }) => severity === 'error')) return;
@@ -129,7 +134,7 @@ class MockSession {
       case 'drag': {
         const found = /\+\(([\d.]+)\)/.exec(state.text), at = found.index + 2;
         const text = String(Math.round(Number(found[1]) + 5 * (fields.to[0] - fields.from[0])));
-        return answer({ edits: [{ from: at, to: at + found[1].length, text }], number: at, point: fields.to, says: `line 3: ${found[1]} became ${text}` });
+        return answer({ edits: [{ from: at, to: at + found[1].length, text }], number: at, point: fields.to });
       }
       case 'map':
       case 'pull': {

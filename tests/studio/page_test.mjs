@@ -32,6 +32,99 @@ test('an error is underlined, and its mending changes the picture', async (hand,
   assert.match(hand.last().text, /curl = 0\.859/);
 });
 
+const leans = (text) => /let lean = (\S+)/.exec(text)[1];
+const blank = (page) => page.evaluate(() => {
+  const canvas = document.getElementById('picture');
+  return canvas.hidden || canvas.width === 2;
+});
+
+test('a wrong text keeps the last good picture, over a reload too', async (hand, page) => {
+  await hand.type_at('terminal', ' oops');
+  await page.waitForSelector('#stale:visible');
+  await page.setViewportSize({ width: 1100, height: 700 });
+  await page.waitForTimeout(300);
+  assert.equal(await page.innerText('#stale'), 'The last good picture');
+  assert.equal(await blank(page), false);
+  await page.reload();
+  await page.waitForSelector('#stale:visible');
+  await hand.until(async () => !(await blank(page)), 'the picture of before is there');
+  assert.equal(await page.innerText('#stale'), 'The last good picture');
+  const [r, g, b] = await page.evaluate(() => [...document.getElementById('picture').getContext('2d').getImageData(5, 5, 1, 1).data]);
+  assert.ok(r > 200 && g > 200 && b > 200, `the paper of the mock is light: ${r} ${g} ${b}`);
+});
+
+test('a first text that is wrong says so in place of a picture', async (hand, page) => {
+  assert.equal(await page.innerText('#stale'), 'No picture yet: the text has an error.');
+  assert.equal(await blank(page), true);
+  await hand.type_at('oops', ' }');
+  for (let i = 0; i < 6; ++i) await page.keyboard.press('Backspace');
+  await hand.until(async () => !(await blank(page)), 'the mended text has a picture');
+  assert.equal(await page.isVisible('#stale'), false);
+}, { opened: { name: 'wrong.rifs', text: 'rifs wrong {\n  map a { scale 0.5 }\n}\noops' }, ready: '#stale:visible' });
+
+test('a knob stays where the hand left it, however late the answers come', async (hand, page, session) => {
+  const share = async () => Number(await hand.knob('lean').evaluate((range) => (range.value - range.min) / (range.max - range.min)));
+  const number = () => page.textContent('.knob button.number >> nth=0');
+  session.told.delay_ms = 700;
+  const [x, y] = await hand.place_of('.knob input[aria-label="lean"]');
+  await hand.drag([x, y], 40, 0);
+  const left = await share(), value = await number();
+  assert.ok(left > 0.6, `${left}`);
+  for (let i = 0; i < 20; ++i) {
+    await page.waitForTimeout(100);
+    assert.ok(Math.abs((await share()) - left) < 1e-9, `it went from ${left} to ${await share()}`);
+  }
+  await page.click('[aria-label="Write lean into the text"]');
+  for (let i = 0; i < 10; ++i) {
+    assert.equal(await number(), value, 'what was written shows');
+    await page.waitForTimeout(100);
+  }
+  await page.keyboard.press('Control+z');
+  await page.click('[aria-label="Reset lean"]');
+  assert.equal(await number(), '2.5', 'the text says so, and no answer is waited for');
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  assert.equal(await number(), '2.5');
+  session.told.delay_ms = 0;
+  await hand.settled();
+  assert.equal(leans(hand.last().text), '2.5');
+});
+
+test('a slow hand moves a whole number', async (hand, page) => {
+  const [x, y] = await hand.place_of('.knob input[aria-label="Steps"]');
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await hand.settled();
+  const before = hand.last().steps;
+  for (let i = 1; i <= 24; ++i) {
+    await page.mouse.move(x + i, y);
+    await page.waitForTimeout(20);
+  }
+  await page.mouse.up();
+  await hand.settled();
+  assert.ok(hand.last().steps > before, `${before} ${hand.last().steps}`);
+});
+
+test('numbers have the digits that the hand can tell', async (hand, page) => {
+  const decimals = (number) => (/\.(\d+)$/.exec(String(number))?.[1] ?? '').length;
+  const slider = await hand.place_of('.knob input[aria-label="lean"]');
+  await hand.drag(slider, 17, 0, { steps: 7 });
+  await hand.settled();
+  assert.ok(decimals(hand.last().set.lean) <= 2, `${hand.last().set.lean}`);
+  await page.click('[aria-label="Write lean into the text"]');
+  await hand.settled();
+  assert.ok(decimals(leans(hand.last().text)) <= 2, leans(hand.last().text));
+  const text = '# A fern, as Barnsley draws it.\nlet lean = 2.500000000000001\nlet tiny = 1.5e-13\nrifs fern {\n  map a { scale 0.5 }\n}\n';
+  await page.evaluate((put) => window.studio.change({ text: put }), text);
+  await hand.settled();
+  await hand.drag(await hand.place_of_text('2.500000000000001'), 30, 0);
+  await hand.settled();
+  assert.match(leans(hand.last().text), /^[34]\.\d\d?$/);
+  await hand.drag(await hand.place_of_text('1.5e-13'), 30, 0);
+  await hand.settled();
+  assert.match(hand.last().text, /let tiny = [23](\.\d)?\d?e-13\n/);
+});
+
 test('a slider: coarse, fine, typed, reset, written', async (hand, page) => {
   const slider = await hand.place_of('.knob input[aria-label="lean"]');
   await hand.changes(() => hand.drag(slider, 20, 0));
@@ -180,6 +273,36 @@ test('a map is dragged by its corner; a map that would grow is red', async (hand
   assert.match(hand.last().text, /follow left -> right/);
 });
 
+test('a click on a box selects its map, a second one the part; handles stay in reach', async (hand, page) => {
+  await page.click('#tab-maps');
+  const [x, y] = await hand.place_of('#view');
+  await page.mouse.click(x, y);
+  await page.waitForTimeout(500);
+  assert.deepEqual([hand.asked('pick').length, await page.isVisible('#picked')], [0, false], 'one click does one thing');
+  assert.ok(await page.locator('.map.chosen').count() === 1);
+  await page.mouse.dblclick(x, y);
+  await page.waitForSelector('#picked dl');
+  assert.equal(hand.asked('pick').length, 1);
+  await page.focus('[data-map=frond]');
+  for (const [dx, dy] of [[0, -0.8], [0, 1.6], [0.8, -0.8], [-1.6, 0]]) {
+    const view = await page.locator('#view').boundingBox();
+    await page.evaluate(([right, up]) => {
+      const { studio } = window, { camera } = studio;
+      studio.change({ camera: { ...camera, location: [0.1 + 8 * right, 5 + 8 * up, 17], look_at: [0.1 + 8 * right, 5 + 8 * up, 0] } });
+    }, [-dx, dy]);
+    await hand.settled();
+    const handles = page.locator('.handle');
+    for (let i = 0; i < await handles.count(); ++i) {
+      const one = await handles.nth(i).boundingBox(), cx = one.x + one.width / 2, cy = one.y + one.height / 2;
+      assert.ok(cx > view.x && cx < view.x + view.width && cy > view.y && cy < view.y + view.height, `handle ${i} lies at ${cx} ${cy}`);
+      const met = await page.evaluate(([px, py]) => document.elementFromPoint(px, py).closest('#maps-layer') !== null, [cx, cy]);
+      assert.ok(met, `something covers handle ${i} at ${cx} ${cy}`);
+    }
+    const turn = await page.locator('.handle.turn').boundingBox();
+    assert.equal(await page.evaluate(([px, py]) => document.elementFromPoint(px, py).dataset.handle, [turn.x + turn.width / 2, turn.y + turn.height / 2]), 'turn');
+  }
+});
+
 const twig = `lsys twig {
   axiom A
   A -> F(1)[+(40)F(1)]F(0.5) # a stem
@@ -255,6 +378,13 @@ test('time plays, and stops', async (hand, page) => {
   await hand.until(() => hand.last().time > 3, 'time goes on');
   await hand.until(async () => (await page.textContent('#play')) === 'Play', 'it ends');
   assert.equal(hand.last().time, 10);
+  const { film } = hand.last();
+  assert.deepEqual(film, { frames: 25, fps: 25, steps: [0, 10], set: {} }, 'the session frames all moments together, as the film does');
+  await page.click('#save-film');
+  await hand.until(() => hand.asked('write').length === 1, 'the film is asked for');
+  assert.deepEqual(hand.asked('write')[0].film, film);
+  await page.click('#tab-knobs');
+  await hand.until(() => hand.last().film === null, 'a single picture is framed by itself');
   await page.click('#undo');
   await hand.settled();
   assert.equal(hand.last().time, null);
@@ -304,7 +434,10 @@ test('a part of an L-system is dragged: the number that follows is one step of t
   const asks = hand.asked('drag');
   assert.equal(asks[0].number, null);
   assert.ok(asks.slice(1).every(({ number }) => number === twig.indexOf('40)')), 'a drag keeps its number');
-  assert.match(await page.textContent('#said'), /line 3: \d+ became 4\d/);
+  await hand.until(async () => {
+    const [, last] = /\+\((\d+)\)/.exec(hand.last().text);
+    return (await page.textContent('#said')) === `line 3: 40 became ${last}`;
+  }, 'it names the value before the drag as the old one');
   await page.keyboard.press('Control+z');
   await hand.settled();
   assert.equal(hand.last().text, twig);

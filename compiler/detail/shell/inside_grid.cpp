@@ -32,8 +32,8 @@ std::int64_t reach_of(const std::vector<Point>& points, double cell) {
 /// sure.
 class Flood {
   public:
-    Flood(double cell, std::int64_t reach)
-        : cell_(cell), reach_(reach), side_(2 * reach),
+    Flood(double cell, std::int64_t reach, const CancelFlag& cancel)
+        : control_{cancel, {}}, cell_(cell), reach_(reach), side_(2 * reach),
           cells_(static_cast<std::size_t>(side_ * side_ * side_)) {}
 
     void take(const std::vector<Point>& points) {
@@ -47,9 +47,11 @@ class Flood {
             return static_cast<float>(cell_ * (static_cast<double>(at - reach_) + 0.5));
         };
         for (std::int64_t z = 0; z < side_; ++z)
-            for (std::int64_t y = 0; y < side_; ++y)
+            for (std::int64_t y = 0; y < side_; ++y) {
+                meter_.add(static_cast<std::uint64_t>(side_));
                 for (std::int64_t x = 0; x < side_; ++x)
                     if (known.has({middle(x), middle(y), middle(z)})) cells_[number(x, y, z)] = taken;
+            }
     }
 
     /// From a corner, which is outside, through the rows of empty cells one after the other (A. R. Smith,
@@ -69,6 +71,7 @@ class Flood {
                 ++last;
             std::fill(cells_.begin() + static_cast<std::ptrdiff_t>(first),
                       cells_.begin() + static_cast<std::ptrdiff_t>(last + 1), wet);
+            meter_.add(last + 1 - first);
             for (const std::size_t beside : {first - row, first + row, first - layer, first + layer})
                 for (std::size_t at = beside; at <= beside + (last - first); ++at)
                     if (cells_[at] == empty && (at == beside || cells_[at - 1] != empty)) seeds.push_back(at);
@@ -108,10 +111,19 @@ class Flood {
     /// Each cell takes on what is set in it and in those a stride before and after. The outermost are set.
     void spread(std::size_t stride, std::vector<std::uint8_t>& before) {
         before = cells_;
-        for (std::size_t i = stride; i + stride < cells_.size(); ++i)
-            cells_[i] = static_cast<std::uint8_t>(before[i - stride] | before[i] | before[i + stride]);
+        // In pieces, so that the loop stays one of vectors.
+        for (std::size_t first = stride; first + stride < cells_.size(); first += cells_a_look) {
+            meter_.add(cells_a_look);
+            const std::size_t end = std::min(cells_.size() - stride, first + cells_a_look);
+            for (std::size_t i = first; i < end; ++i)
+                cells_[i] = static_cast<std::uint8_t>(before[i - stride] | before[i] | before[i + stride]);
+        }
     }
 
+    static constexpr std::size_t cells_a_look = 1 << 18;
+
+    const Control control_;
+    WorkMeter meter_{control_, "shell", cells_a_look};
     double cell_;
     std::int64_t reach_, side_;
     std::vector<std::uint8_t> cells_;
@@ -130,14 +142,14 @@ bool InsideGrid::has(const Point& point) const {
 
 std::shared_ptr<const InsideGrid> find_inside(const std::vector<Point>& points, double cell,
                                               const InsideGrid* known, std::uint64_t& work,
-                                              std::uint64_t most_work) {
+                                              std::uint64_t most_work, const CancelFlag& cancel) {
     const std::int64_t reach = reach_of(points, cell);
     const auto side = static_cast<double>(2 * reach);
     if (side < least_cells_across || side * side * side > most_cells) return nullptr;
     const std::uint64_t flood_work = static_cast<std::uint64_t>(side * side * side) / cells_a_move;
     if (work > most_work || flood_work > most_work - work) return nullptr;
     work += flood_work;
-    Flood flood(cell, reach);
+    Flood flood(cell, reach, cancel);
     flood.take(points);
     if (known) flood.take(*known); // points left out before are no hole
     flood.run();

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/support/control.h"
+
 namespace graftal {
 
 /// Cells of a cubic grid about the origin that no eye outside can see into, behind a set of points.
@@ -31,9 +33,10 @@ class InsideGrid {
 /// those that are `known` to be inside, if any are. What lies a cell behind all that the flood wets is
 /// inside. Null if nothing is, or if the grid would have too few cells across for that, or too many in all.
 /// `work` grows by what the flood costs, in moves of a point (points.h); null, too, where it would pass
-/// `most_work`.
+/// `most_work`. The flag ends it by Cancelled.
 std::shared_ptr<const InsideGrid> find_inside(const std::vector<std::array<float, 3>>& points, double cell,
                                               const InsideGrid* known, std::uint64_t& work,
-                                              std::uint64_t most_work = UINT64_MAX);
+                                              std::uint64_t most_work = UINT64_MAX,
+                                              const CancelFlag& cancel = {});
 
 } // namespace graftal

@@ -7,6 +7,7 @@
 
 #include "compiler/detail/graph/cut_graph.h"
 #include "compiler/detail/shell/inside_grid.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -28,6 +29,7 @@ inline constexpr double most_shell_cells = 7e5;
 struct PointLimits {
     std::uint64_t work = 300'000'000; ///< in all: points moved and sampled, cells flooded
     std::size_t points = 8'000'000;   ///< kept at once, of all nodes
+    CancelFlag cancel{};              ///< ends it by Cancelled
 };
 
 /// Points of what a node draws, at most one in each cell of a grid.

@@ -35,10 +35,15 @@ constexpr int most_seed_steps = 4000;
 constexpr std::size_t most_large_parts = 30'000;
 constexpr double least_large_part = 12;
 
+/// Points and states after which it asks whether somebody still wants them.
+constexpr std::uint64_t points_a_look = 1 << 14;
+
 } // namespace
 
-PointSystem::PointSystem(const CutGraph& cut, std::size_t most_points)
-    : cut_(cut), most_points_(most_points), painted_(cut.tinted || !cut.materials.empty()) {}
+PointSystem::PointSystem(const CutGraph& cut, std::size_t most_points, const CancelFlag& cancel)
+    : cut_(cut), most_points_(most_points),
+      painted_(cut.tinted || !cut.materials.empty()), control_{cancel, {}},
+      meter_(control_, "shell", points_a_look) {}
 
 bool PointSystem::run(NodeId root, std::uint32_t steps, double cell, const CoarseStates& coarse,
                       std::uint64_t most_work) {
@@ -100,7 +105,7 @@ PointSystem::CoarseStates PointSystem::take_coarse() {
     for (State& state : states_) {
         // Where a finer look takes too much room or work, the last one is taken.
         std::shared_ptr<const InsideGrid> inside =
-            find_inside(state.points, state.cell, state.inside.get(), work_, most_work_);
+            find_inside(state.points, state.cell, state.inside.get(), work_, most_work_, control_.cancel);
         if (!inside) inside = state.inside;
         if (!inside) continue;
         Coarse& coarse = found[state.key];
@@ -119,6 +124,7 @@ double PointSystem::stretch_of(const CutEdge& edge) const {
 }
 
 std::optional<std::uint32_t> PointSystem::state_number(PieceKind key) {
+    meter_.add();
     key = without_idle_levels(cut_, key);
     const auto next = static_cast<std::uint32_t>(states_.size());
     const std::uint32_t number = number_of_.find_or_add(
@@ -265,6 +271,7 @@ std::uint64_t PointSystem::packed_cell(const Point& point, double cell) {
 }
 
 bool PointSystem::add(std::uint32_t number, const Point& point, const PointPaint& paint) {
+    meter_.add();
     State& state = states_[number];
     if (state.inside && state.inside->has(point)) return true;
     for (const float place : point)

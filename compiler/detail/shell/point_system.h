@@ -12,6 +12,7 @@
 #include "compiler/detail/shell/cell_table.h"
 #include "compiler/detail/shell/inside_grid.h"
 #include "compiler/detail/shell/point_set.h"
+#include "compiler/support/control.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {
@@ -50,7 +51,7 @@ class PointSystem {
     };
 
     /// Keeps a reference.
-    PointSystem(const CutGraph& cut, std::size_t most_points);
+    PointSystem(const CutGraph& cut, std::size_t most_points, const CancelFlag& cancel = {});
 
     /// Makes the node's grid of these cells, with `most_work` at most. False if a limit is passed.
     bool run(NodeId root, std::uint32_t steps, double cell, const CoarseStates& coarse,
@@ -121,6 +122,8 @@ class PointSystem {
     IdTable number_of_; ///< of states, by their keys
     std::size_t kept_ = 0;
     std::uint64_t work_ = 0, all_work_ = 0;
+    const Control control_;
+    WorkMeter meter_; ///< of points and states; it charges nothing
 };
 
 } // namespace graftal

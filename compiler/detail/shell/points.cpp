@@ -55,7 +55,7 @@ class GridSearch {
   public:
     GridSearch(const CutGraph& cut, NodeId node, std::uint32_t steps, const PointLimits& limits)
         : node_(node), steps_(steps), limits_(limits), most_a_run_(limits.work / runs_paid_for),
-          ball_(cut.nodes[node].ball), system_(cut, limits.points) {}
+          ball_(cut.nodes[node].ball), system_(cut, limits.points, limits.cancel) {}
 
     PointSet run(double asked) {
         PointSet set;

@@ -26,6 +26,8 @@ constexpr double share_of_work_for_points = 0.8;
 /// and no more than this at once.
 constexpr int most_tries = 4;
 constexpr double coarser_for_triangles = 1.25, least_share_built = 0.1;
+/// Cells, or quads, after which it asks whether somebody still wants it.
+constexpr std::uint64_t cells_a_look = 1 << 14;
 /// Colours are told apart no better than this.
 constexpr double colour_grain = 1.0 / 255;
 
@@ -42,7 +44,8 @@ struct Quad {
 /// Cells, and the faces between the filled and the empty.
 class Surface {
   public:
-    Surface(const PointSet& set, std::size_t max_quads) : set_(set), max_quads_(max_quads) {}
+    Surface(const PointSet& set, std::size_t max_quads, const CancelFlag& cancel)
+        : control_{cancel, {}}, set_(set), max_quads_(max_quads) {}
 
     /// The share of the cells whose faces there was room for: the surface is whole where it is 1.
     double build() {
@@ -70,7 +73,9 @@ class Surface {
         const int deep = set_.flat ? 0 : 1;
         for (std::uint32_t number = 0; number < set_.points.size(); ++number)
             take(place_of(number, 0.0), number);
+        meter_.add(set_.points.size());
         for (std::uint32_t number = 0; number < set_.points.size(); ++number) {
+            meter_.add();
             const CellKey first = place_of(number, 0.5);
             for (int z = 0; z <= deep; ++z)
                 for (int y = 0; y <= 1; ++y)
@@ -118,6 +123,7 @@ class Surface {
     double add_sheet() {
         const double plane = static_cast<double>(set_.points.front()[2]) / set_.cell;
         for (std::size_t i = 0; i < order_.size(); ++i) {
+            meter_.add();
             const auto& [packed, point] = order_[i];
             const CellKey at = CellKey::unpacked(packed);
             quads.push_back({{corner(at), corner({at.x + 1, at.y, 0}), corner({at.x + 1, at.y + 1, 0}),
@@ -132,6 +138,7 @@ class Surface {
 
     double add_faces() {
         for (std::size_t i = 0; i < order_.size(); ++i) {
+            meter_.add();
             const auto& [packed, point] = order_[i];
             const CellKey at = CellKey::unpacked(packed);
             for (int axis = 0; axis < 3; ++axis)
@@ -168,12 +175,14 @@ class Surface {
         for (int i = 0; i < smoothings; ++i) {
             sum.assign(corners.size(), Vec3(0.0));
             count.assign(corners.size(), 0);
-            for (const Quad& quad : quads)
+            for (const Quad& quad : quads) {
+                meter_.add();
                 for (std::size_t k = 0; k < 4; ++k)
                     for (const std::size_t other : {(k + 1) % 4, (k + 3) % 4}) {
                         sum[quad.corners[k]] += corners[quad.corners[other]].place;
                         ++count[quad.corners[k]];
                     }
+            }
             for (std::size_t c = 0; c < corners.size(); ++c) {
                 const Vec3 mean = sum[c] / static_cast<double>(count[c]);
                 corners[c].place = glm::clamp(mean, start[c] - 0.5, start[c] + 0.5);
@@ -192,6 +201,7 @@ class Surface {
         for (int i = 0; !set_.flat && i < smoothings; ++i) {
             sum.assign(corners.size(), Vec3(0.0));
             for (const Quad& quad : quads) {
+                meter_.add();
                 Vec3 mean(0.0);
                 for (const std::uint32_t c : quad.corners)
                     mean += normalised(corners[c].normal);
@@ -210,6 +220,8 @@ class Surface {
         return length > 1e-9 ? v / length : Vec3(0, 1, 0);
     }
 
+    const Control control_;
+    WorkMeter meter_{control_, "shell", cells_a_look};
     const PointSet& set_;
     const std::size_t max_quads_;
     CellTable cells_;
@@ -226,8 +238,12 @@ class ShellParts {
         : set_(set), surface_(surface), request_(request), scale_(set.cell * body_from_node) {}
 
     std::vector<BakedPart> take() {
-        for (const Quad& quad : surface_.quads)
+        const Control control{request_.cancel, {}};
+        WorkMeter meter(control, "shell", cells_a_look);
+        for (const Quad& quad : surface_.quads) {
+            meter.add();
             add(quad);
+        }
         std::vector<BakedPart> parts;
         for (auto& [material, part] : parts_) {
             Mesh& mesh = part.mesh;
@@ -296,6 +312,7 @@ void bake_into(Baked& baked, const CutGraph& cut, const ShellRequest& request, s
     PointLimits limits;
     limits.points = std::min(
         limits.points, static_cast<std::size_t>(static_cast<double>(max_triangles) / triangles_a_point));
+    limits.cancel = request.cancel;
     ShellStore of_this_shell;
     ShellStore& store = request.store ? *request.store : of_this_shell;
     baked.complete = false;
@@ -309,7 +326,7 @@ void bake_into(Baked& baked, const CutGraph& cut, const ShellRequest& request, s
         work_left -= std::min(work_left, work);
         baked.shell_work += work - limits.work;
         if (set->points.empty()) return;
-        Surface surface(*set, max_triangles / 2);
+        Surface surface(*set, max_triangles / 2, request.cancel);
         const double share_built = surface.build();
         if (share_built == 1) {
             baked.triangles = 2 * surface.quads.size();

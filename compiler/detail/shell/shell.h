@@ -19,6 +19,7 @@ struct ShellRequest {
     std::uint64_t most_work = PointLimits().work;
     std::vector<Rgb> inherited;  ///< by painter: the colour of what names no material
     ShellStore* store = nullptr; ///< shells made already; null: each is made anew
+    CancelFlag cancel{};         ///< ends it by Cancelled
 };
 
 /// The node as a closed surface, in the node's frame (Baked::representative_from_body reads node_from_body):

@@ -6,7 +6,9 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
+#include "compiler/editing/rounding.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lower/point_maps.h"
 #include "compiler/rifs/system.h"
@@ -45,6 +47,14 @@ bool is_flat(const Affine& map) {
     return std::abs(flattened(map).linear[2][2] - m[2][2]) <= 1e-9 * size;
 }
 
+/// The most that two maps differ in a box.
+double farthest(const Affine& a, const Affine& b, const Box& box) {
+    double most = 0;
+    for (const Vec3& corner : box.corners())
+        most = std::max(most, glm::distance(a(corner), b(corner)));
+    return most;
+}
+
 } // namespace
 
 Expression number_of(double value) {
@@ -53,12 +63,12 @@ Expression number_of(double value) {
     return number;
 }
 
-std::string number_text(double value) {
+std::string number_text(double value, double about) {
     std::string rounded;
     append_number(rounded, value, 12);
     const std::optional<double> read = parse_number(rounded);
     constexpr double rounding = 4e-15;
-    if (read && std::abs(*read - value) <= rounding * std::abs(value)) return rounded;
+    if (read && std::abs(*read - value) <= rounding * std::max(std::abs(value), about)) return rounded;
     return std::abs(value) < rounding ? "0" : shortest(value);
 }
 
@@ -173,17 +183,41 @@ std::vector<TextEdit> MapForm::edits(const Document& document, const std::vector
         if (sum && number.operands[1].kind == Expression::Kind::number) {
             const Expression& constant = number.operands[1];
             const double sign = number.text == "-" ? -1 : 1;
-            edits.push_back(
-                {constant.span.begin, constant.span.end, number_text(constant.number + sign * change)});
+            edits.push_back({constant.span.begin, constant.span.end,
+                             number_text(constant.number + sign * change, std::abs(values_[i]))});
             continue;
         }
-        const std::string behind = (change < 0 ? "-" : "+") + number_text(std::abs(change));
+        const std::string behind =
+            (change < 0 ? "-" : "+") + number_text(std::abs(change), std::abs(values_[i]));
         if (takes_a_constant(number, text))
             edits.push_back({number.span.end, number.span.end, behind});
         else
             edits.push_back({number.span.begin, number.span.end, fmt::format("({}){}", text, behind)});
     }
     return edits;
+}
+
+std::vector<double> MapForm::rounded(const std::vector<double>& values, const Hand& hand) const {
+    const std::optional<Affine> map = at(values);
+    if (!(hand.grain > 0) || !map) return values;
+    const Box reach = hand.reach.empty() ? Box{Vec3(-1.0), Vec3(1.0)} : hand.reach;
+    std::vector<double> result = values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double change = values[i] - values_[i];
+        constexpr double kept = 1e-12;
+        if (std::abs(change) <= kept * std::abs(values_[i])) continue;
+        const auto unseen = [&](double off) {
+            std::vector<double> moved = values;
+            moved[i] += off;
+            const std::optional<Affine> other = at(moved);
+            return other && farthest(*map, *other, reach) <= hand.grain / static_cast<double>(values.size());
+        };
+        const int decimals = decimals_for(unseen);
+        // To a number with names a constant is added.
+        result[i] = has_names(numbers_[i]) ? values_[i] + graftal::rounded(change, decimals)
+                                           : graftal::rounded(values[i], decimals);
+    }
+    return at(result) ? result : values;
 }
 
 MapForm MapForm::in_space() const {

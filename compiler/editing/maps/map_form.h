@@ -8,9 +8,16 @@
 #include "compiler/editing/text_edit.h"
 #include "compiler/rifs/ast.h"
 #include "compiler/support/affine.h"
+#include "compiler/support/bounds.h"
 #include "compiler/syntax/transform.h"
 
 namespace graftal {
+
+/// What a hand can tell that drags a map.
+struct Hand {
+    double grain = 0; ///< a length of the model that is just seen; 0: numbers are written exactly
+    Box reach;        ///< of what is mapped; empty: about one unit
+};
 
 /// An affine map as a text writes it: a row of codes or a transform list, whose numbers may change.
 class MapForm {
@@ -41,6 +48,9 @@ class MapForm {
     /// one with names, such as `2*lean`, a constant is added. Numbers that stay are left as they are.
     std::vector<TextEdit> edits(const Document& document, const std::vector<double>& values) const;
 
+    /// The values with the decimals that the hand can tell. Those that are the text's own stay.
+    std::vector<double> rounded(const std::vector<double>& values, const Hand& hand) const;
+
     /// Scales of fewer numbers, none of them with names, get one for each axis: two of a flat map. `lines`:
     /// gets their places.
     MapForm widened(std::vector<std::size_t>& lines) const;
@@ -66,8 +76,8 @@ class MapForm {
 Expression number_of(double value);
 
 /// A number as texts have it: the shortest one that reads back as the same, or a shorter one so near that
-/// only rounding lies between.
-std::string number_text(double value);
+/// only rounding lies between. `about`: the size of what it was computed from, where that is larger.
+std::string number_text(double value, double about = 0);
 
 /// The matrix of a flat map, with the z that a row of `codes 2d` has.
 Affine flattened(const Affine& map);

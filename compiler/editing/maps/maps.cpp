@@ -245,28 +245,38 @@ std::string text_of(const TransformLine& line, bool colon) {
 class Rewriter {
   public:
     Rewriter(const Document& document, const WrittenMap& map, const Affine& wanted,
-             const LowerOptions& options)
-        : document_(document), map_(map), form_(*map.form), wanted_(wanted), options_(options) {}
+             const LowerOptions& options, const Hand& hand)
+        : document_(document), map_(map), form_(*map.form), wanted_(wanted), options_(options), hand_(hand) {}
 
     std::optional<std::vector<TextEdit>> run() {
         if (map_.row && map_.row->form != RifsForm::transforms)
-            return accepted(form_.edits(document_, codes_of(map_.row->form, wanted_, form_.values())));
+            return written(form_, codes_of(map_.row->form, wanted_, form_.values()),
+                           [&](const auto& codes) { return form_.edits(document_, codes); });
         for (const Variant& variant : variants_of(form_))
             if (auto edits = as(variant)) return edits;
-        return accepted(as_matrix());
+        return as_matrix();
     }
 
   private:
+    /// The edits that give the form its numbers, as the hand can tell them.
+    template<typename Edits>
+    std::optional<std::vector<TextEdit>> written(const MapForm& form, const std::vector<double>& numbers,
+                                                 const Edits& edits) const {
+        const std::vector<double> rounded = form.rounded(numbers, hand_);
+        const std::optional<Affine> map = rounded == numbers ? wanted_ : form.at(rounded);
+        return map ? accepted(edits(rounded), *map) : std::nullopt;
+    }
+
     /// The edits, if the text then reads as the matrix.
-    std::optional<std::vector<TextEdit>> accepted(std::vector<TextEdit> edits) const {
+    std::optional<std::vector<TextEdit>> accepted(std::vector<TextEdit> edits, const Affine& wanted) const {
         const Document after(document_.name(), applied(document_.text(), edits));
         if (after.findings().has_errors()) return std::nullopt;
         for (const WrittenMap& map : written_maps(after, lets_of(after, options_)))
             if (map.name == map_.name && map.form) {
                 const std::vector<double> now = entries(map.form->matrix(), form_.flat());
-                const std::vector<double> goal = entries(wanted_, form_.flat());
+                const std::vector<double> goal = entries(wanted, form_.flat());
                 for (std::size_t i = 0; i < now.size(); ++i)
-                    if (!(std::abs(now[i] - goal[i]) <= read_back * size_of(wanted_))) return std::nullopt;
+                    if (!(std::abs(now[i] - goal[i]) <= read_back * size_of(wanted))) return std::nullopt;
                 return edits;
             }
         return std::nullopt;
@@ -292,7 +302,8 @@ class Rewriter {
         if (!form) return std::nullopt;
         const auto numbers = numbers_for(*form, wanted_);
         if (!numbers) return std::nullopt;
-        return accepted(edits_for(*form, *numbers, widened));
+        return written(*form, *numbers,
+                       [&](const auto& rounded) { return edits_for(*form, rounded, widened); });
     }
 
     std::vector<TextEdit> edits_for(const MapForm& form, const std::vector<double>& numbers,
@@ -332,7 +343,7 @@ class Rewriter {
     }
 
     /// One line in place of all; what stands between the others stays.
-    std::vector<TextEdit> as_matrix() const {
+    std::optional<std::vector<TextEdit>> as_matrix() const {
         const Affine map = form_.flat() ? flattened(wanted_) : wanted_;
         std::vector<double> rows;
         for (int row = 0; row < 3; ++row) {
@@ -341,13 +352,19 @@ class Rewriter {
             rows.push_back(map.translation[row]);
         }
         const bool projects = is_singular(map);
-        const std::string text =
-            text_of(line_of(projects ? LineKind::projection : LineKind::matrix, rows), colon());
-        std::vector<TextEdit> edits;
-        for (const TransformLine& line : form_.lines())
-            edits.push_back({line.span.begin, line.span.end, edits.empty() ? text : ""});
-        if (edits.empty()) edits.push_back({map_.list_end.begin, map_.list_end.begin, "  " + text});
-        return edits;
+        const LineKind kind = projects ? LineKind::projection : LineKind::matrix;
+        const std::vector<double> identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+        std::string why;
+        const std::optional<MapForm> form = MapForm::of({line_of(kind, projects ? rows : identity)}, {}, why);
+        if (!form) return std::nullopt;
+        return written(*form, rows, [&](const std::vector<double>& rounded) {
+            const std::string text = text_of(line_of(kind, rounded), colon());
+            std::vector<TextEdit> edits;
+            for (const TransformLine& line : form_.lines())
+                edits.push_back({line.span.begin, line.span.end, edits.empty() ? text : ""});
+            if (edits.empty()) edits.push_back({map_.list_end.begin, map_.list_end.begin, "  " + text});
+            return edits;
+        });
     }
 
     const Document& document_;
@@ -355,6 +372,7 @@ class Rewriter {
     const MapForm& form_;
     Affine wanted_;
     const LowerOptions& options_;
+    const Hand hand_;
 };
 
 /// The rules that a matrix breaks for this map, or "".
@@ -398,7 +416,7 @@ std::vector<EditableMap> maps_of(const Document& document, const LowerOptions& o
 }
 
 MapChange move_map(const Document& document, std::string_view name, const Affine& matrix,
-                   const EditContext& context) {
+                   const EditContext& context, const Hand& hand) {
     const std::vector<WrittenMap> maps = written_maps(document, lets_of(document, context.lower));
     const auto found = std::ranges::find(maps, name, &WrittenMap::name);
     if (found == maps.end()) return {{}, fmt::format("There is no map '{}'.", name)};
@@ -407,7 +425,8 @@ MapChange move_map(const Document& document, std::string_view name, const Affine
     WrittenMap map = *found;
     if (map.form->flat() && leaves_plane(matrix)) map.form = map.form->in_space();
     const Affine wanted = map.form->flat() ? flattened(matrix) : matrix;
-    const std::optional<std::vector<TextEdit>> edits = Rewriter(document, map, wanted, context.lower).run();
+    const std::optional<std::vector<TextEdit>> edits =
+        Rewriter(document, map, wanted, context.lower, hand).run();
     if (!edits)
         return {{}, fmt::format("'{}' cannot have this matrix: it is too large, too small or flat.", name)};
     MapChange change{*edits};

@@ -6,6 +6,7 @@
 
 #include "compiler/editing/document.h"
 #include "compiler/editing/maps/contraction_check.h"
+#include "compiler/editing/maps/map_form.h"
 #include "compiler/editing/text_edit.h"
 #include "compiler/session/values.h"
 #include "compiler/support/bounds.h"
@@ -45,9 +46,10 @@ struct MapChange {
 /// of its transforms in their order, as little changed as can be. Where these cannot say the matrix, scales
 /// get a number for each axis, a translation or rotations are added, and at last a `matrix` takes the place
 /// of all. Comments stay. Of a flat map in the plane, the z of the matrix follows the rule of flat maps. Read
-/// back, the map is the matrix to within 1e-12 of its size. Throws as check_contraction().
+/// back, the map is the matrix to within 1e-12 of its size, or to what the hand can tell. Throws as
+/// check_contraction().
 MapChange move_map(const Document& document, std::string_view name, const Affine& matrix,
-                   const EditContext& context = {});
+                   const EditContext& context = {}, const Hand& hand = {});
 
 /// Moves the point of the attractor with this address (zoom/address.h) from one place to another: solves for
 /// the numbers of all maps on the address with the least change, and keeps the model contracting; where that
@@ -55,7 +57,7 @@ MapChange move_map(const Document& document, std::string_view name, const Affine
 /// last object. Requires nothing of `from` with an endless address, whose point is known. Throws as
 /// check_contraction().
 MapChange pull(const Document& document, std::string_view address, Vec3 from, Vec3 to,
-               const EditContext& context = {});
+               const EditContext& context = {}, const Hand& hand = {});
 
 /// The control digraph of a block of a `.rifs`.
 struct Digraph {

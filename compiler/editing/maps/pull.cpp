@@ -35,8 +35,8 @@ struct Way {
 
 class Puller {
   public:
-    Puller(const Document& document, const EditContext& context)
-        : document_(document), context_(context),
+    Puller(const Document& document, const EditContext& context, const Hand& hand)
+        : document_(document), context_(context), hand_(hand),
           maps_(written_maps(document, lets_of(document, context.lower))) {
         for (std::size_t i = 0; i < maps_.size(); ++i)
             for (const Span place : maps_[i].places)
@@ -190,7 +190,7 @@ class Puller {
         MapChange change;
         for (const auto& [map, first] : first_) {
             const MapForm& form = *maps_[map].form;
-            const std::vector<double> own = numbers_of(map, numbers);
+            const std::vector<double> own = form.rounded(numbers_of(map, numbers), hand_);
             std::ranges::move(form.edits(document_, own), std::back_inserter(change.edits));
             if (const auto matrix = form.at(own)) change.ratio = std::max(change.ratio, norm(matrix->linear));
         }
@@ -203,6 +203,7 @@ class Puller {
 
     const Document& document_;
     const EditContext& context_;
+    const Hand hand_;
     std::vector<WrittenMap> maps_;
     std::map<std::uint32_t, std::size_t> by_place_; ///< of the span that instances have
     std::map<std::size_t, std::size_t> first_;      ///< by map, the first of its numbers
@@ -212,8 +213,8 @@ class Puller {
 } // namespace
 
 MapChange pull(const Document& document, std::string_view address, Vec3 from, Vec3 to,
-               const EditContext& context) {
-    return Puller(document, context).run(address, from, to);
+               const EditContext& context, const Hand& hand) {
+    return Puller(document, context, hand).run(address, from, to);
 }
 
 } // namespace graftal

@@ -84,6 +84,8 @@ class Page : public std::enable_shared_from_this<Page> {
         socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
         socket_.read_message_max(most_message_bytes);
         socket_.auto_fragment(false);
+        Error ignored; // Small messages follow each other: none waits for the page's word of the one before.
+        beast::get_lowest_layer(socket_).socket().set_option(Tcp::no_delay(true), ignored);
         socket_.async_accept(request, [self = shared_from_this()](Error error) {
             if (error || self->shared_.stopping) return self->leave();
             try {

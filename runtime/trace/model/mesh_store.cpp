@@ -51,7 +51,8 @@ void add_part(const BakedPart& part, const Affine& frame_from_body, TraceMesh& m
     }
 }
 
-std::unique_ptr<TraceMesh> trace_mesh(const Baked& baked, const Affine& frame_from_representative) {
+std::unique_ptr<TraceMesh> trace_mesh(const Baked& baked, const Affine& frame_from_representative,
+                                      const CancelFlag& cancel) {
     const Affine frame_from_body = frame_from_representative * baked.representative_from_body;
     auto mesh = std::make_unique<TraceMesh>();
     for (const BakedPart& part : baked.parts)
@@ -63,7 +64,7 @@ std::unique_ptr<TraceMesh> trace_mesh(const Baked& baked, const Affine& frame_fr
             box.include(mesh->vertices[corner]);
         items.emplace_back(box, 1, i);
     }
-    mesh->tree = build_box_tree(items, mesh->boxes);
+    mesh->tree = build_box_tree(items, mesh->boxes, cancel);
     return mesh;
 }
 
@@ -108,10 +109,14 @@ const TraceMesh& MeshStore::mesh(const PieceKind& key, const Affine& graph_from_
     static const TraceMesh none;
     if (!entry.made && shell_work_ > most_work_) return none;
     // Others may bake other meshes meanwhile.
-    std::call_once(entry.baked, [&] {
-        entry.mesh = bake_shell(key, graph_from_frame);
-        entry.made = true;
-    });
+    try {
+        std::call_once(entry.baked, [&] {
+            entry.mesh = bake_shell(key, graph_from_frame);
+            entry.made = true;
+        });
+    } catch (const Cancelled&) { // whoever asks again makes it
+        return none;
+    }
     return *entry.mesh;
 }
 
@@ -119,6 +124,7 @@ std::unique_ptr<TraceMesh> MeshStore::bake_shell(const PieceKind& key, const Aff
     BakeRequest request;
     request.shell = true;
     request.shells = prepared_.shells.get();
+    request.cancel = cancel_;
     request.representative = key.node;
     request.steps = key.steps;
     request.detail_per_unit = value_of(key.unit_step);
@@ -132,7 +138,7 @@ std::unique_ptr<TraceMesh> MeshStore::bake_shell(const PieceKind& key, const Aff
         bake(prepared_.cut, prepared_.symmetry, request, std::min(most_triangles, affordable));
     shell_work_ += baked.shell_work +
                    static_cast<std::uint64_t>(moves_a_triangle * static_cast<double>(baked.triangles));
-    auto mesh = trace_mesh(baked, inverse(graph_from_frame));
+    auto mesh = trace_mesh(baked, inverse(graph_from_frame), cancel_);
     mesh->cell = baked.culled_detail / request.detail_per_unit / graph_from_frame.linear[0][0];
     return mesh;
 }

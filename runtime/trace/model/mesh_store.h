@@ -12,6 +12,7 @@
 #include "compiler/detail/graph/piece_kind.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/primitives/intersect.h"
+#include "compiler/support/control.h"
 #include "runtime/trace/model/box_tree.h"
 
 namespace graftal {
@@ -73,6 +74,9 @@ class MeshStore {
     /// From so much work on, a mesh that is not there yet is not made: mesh() gives an empty one. For looks
     /// that are given up then. Requires that nobody asks for meshes meanwhile.
     void make_until(std::uint64_t most_work) { most_work_ = most_work; }
+    /// Once this flag is raised, meshes that are not there yet are empty: what they are for is given up.
+    /// Requires that nobody asks for meshes meanwhile.
+    void cancel_by(const CancelFlag& cancel) { cancel_ = cancel; }
 
     /// The node in its frame. The same node, with as many steps, is always asked for in the same frame. The
     /// reference stays.
@@ -91,6 +95,7 @@ class MeshStore {
     const std::uint64_t most_shell_work_;
     std::mutex mutex_;
     std::uint64_t most_work_ = UINT64_MAX;
+    CancelFlag cancel_;
     std::unordered_map<PieceKind, Entry, PieceKindHash> meshes_;
     std::atomic<double> coarsest_shell_ = 0;
     mutable std::atomic<std::uint64_t> shell_work_ = 0;

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "compiler/session/session.h"
@@ -206,6 +207,70 @@ TEST(Maps, RandomMatricesReadBack) {
         }
     }
     EXPECT_LT(as_matrix, 150);
+}
+
+/// The most decimals that a number of the text has.
+std::size_t most_decimals(const std::string& text) {
+    std::size_t most = 0;
+    for (std::size_t at = text.find('.'); at != std::string::npos; at = text.find('.', at + 1)) {
+        const std::size_t end = text.find_first_not_of("0123456789", at + 1);
+        most = std::max(most, std::min(end, text.size()) - at - 1);
+    }
+    return most;
+}
+
+std::size_t most_decimals(const std::vector<TextEdit>& edits) {
+    std::size_t most = 0;
+    for (const TextEdit& edit : edits)
+        most = std::max(most, most_decimals(edit.text));
+    return most;
+}
+
+TEST(Maps, AHandWritesTheDigitsThatItTells) {
+    const CounterRandom random(54);
+    std::uint64_t n = 0;
+    const Box reach{Vec3(-2.0, -1.0, -1.0), Vec3(3.0, 10.0, 1.0)};
+    for (const double grain : {0.02, 0.0003})
+        for (int i = 0; i < 90; ++i) {
+            const int form = i % 9;
+            const std::string text = "let lean = 0.2\nrifs a {\n  " + random_map(random, n, form) + "\n}\n";
+            const bool flat = form < 2;
+            Affine wanted;
+            for (int column = 0; column < 3; ++column)
+                for (int row = 0; row < 3; ++row)
+                    wanted.linear[column][row] = flat && (column == 2 || row == 2) ? 0 : number(random, n);
+            wanted.translation = {number(random, n), number(random, n), flat ? 0 : number(random, n)};
+            const MapChange change = move_map(Document("m.rifs", text), "m", wanted, {}, {grain, reach});
+            ASSERT_EQ(change.refusal, "") << text;
+            const std::string after = applied(text, change.edits);
+            EXPECT_LE(most_decimals(change.edits), std::ceil(-std::log10(grain)) + 4) << after;
+            const Affine read = maps_of(Document("m.rifs", after)).front().matrix;
+            for (Vec3 corner : reach.corners()) {
+                if (flat) corner.z = 0;
+                EXPECT_LE(glm::distance(read(corner), wanted(corner)), grain) << after;
+            }
+        }
+}
+
+TEST(Maps, ADragOfNothingChangesNothing) {
+    const std::string text =
+        "rifs a {\n  map m { scale 1/3  rotate z, 20.123456789  translate <1/7, 0.5> }\n}\n";
+    const Affine matrix = maps_of(Document("m.rifs", text)).front().matrix;
+    EXPECT_TRUE(move_map(Document("m.rifs", text), "m", matrix, {}, {0.01, {}}).edits.empty());
+    const std::string after = applied(
+        text, move_map(Document("m.rifs", text), "m", moved(matrix, {0.1, 0, 0}), {}, {0.01, {}}).edits);
+    EXPECT_EQ(after, "rifs a {\n  map m { scale 1/3  rotate z, 20.123456789  translate <0.243, 0.5> }\n}\n");
+}
+
+TEST(Pull, AHandWritesTheDigitsThatItTells) {
+    const std::string text =
+        "let lean = 0.2\nrifs a {\n  map m { scale 1/2  translate <lean, 0.123456789> }\n"
+        "  map o { scale 1/2  translate <-0.5, 0> }\n}\n";
+    const MapChange change =
+        pull(Document("m.rifs", text), "m.o", {0, 0.1, 0}, {0.05, 0.2, 0}, {}, {0.004, {}});
+    ASSERT_EQ(change.refusal, "");
+    ASSERT_FALSE(change.edits.empty());
+    EXPECT_LE(most_decimals(change.edits), 5u) << applied(text, change.edits);
 }
 
 TEST(Maps, SimilaritiesKeepTheirWords) {

@@ -1,6 +1,7 @@
 #include "runtime/studio/studio_session.h"
 
 #include <chrono>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <string>
@@ -8,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "compiler/session/session.h"
+#include "compiler/session/shared_framing.h"
 #include "tests/unit/studio/page.h"
 
 namespace graftal {
@@ -216,6 +219,44 @@ TEST(StudioSession, TheCommandLineSaysTheState) {
               "graftal render 'my model.rifs' --size 64x36 --set spread=0.25 --steps 4 --seed 3 "
               "--camera 'location=0,1,5 look_at=0,0,0 angle=40' --quality draft --engine native");
     EXPECT_TRUE(page.ask("nonsense").contains("error"));
+}
+
+TEST(StudioSession, MomentsOfAFilmHaveItsView) {
+    const nlohmann::json film{
+        {"frames", 9}, {"fps", 3}, {"set", {{"spread", {{0, 0.1}, {0.5, 2}, {1, 0.5}}}}}};
+    const auto camera = [&](double spread, const nlohmann::json& of) {
+        Page page;
+        page.show({{"text", crystal}, {"set", {{"spread", spread}}}, {"film", of}});
+        page.work();
+        return page.last("model")["camera"];
+    };
+    const nlohmann::json first = camera(0.1, film);
+    EXPECT_EQ(first, camera(0.5, film));
+    EXPECT_EQ(first, camera(2, film)) << "the largest moment";
+    EXPECT_NE(first, camera(0.1, nullptr)) << "a single picture is framed by itself";
+
+    Session session("crystal.rifs", crystal);
+    SharedFraming all;
+    StageOptions stages;
+    stages.view.size = {64, 36};
+    for (int frame = 0; frame < 9; ++frame) {
+        const double t = frame / 8.0;
+        stages.lower.set["spread"] = t < 0.5 ? std::lerp(0.1, 2.0, 2 * t) : std::lerp(2.0, 0.5, 2 * t - 1);
+        Compilation compilation;
+        all.include(*session.analysed(stages, compilation), std::nullopt);
+    }
+    all.settle({}, stages.view.size, false);
+    Compilation compilation;
+    const Vec3 expected = all.view(*session.analysed(stages, compilation), stages.view).camera.location;
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(first["location"][axis].get<double>(), expected[axis], 1e-12) << "as `animate` frames it";
+}
+
+TEST(StudioSession, AFilmThatCannotBeReadIsAFault) {
+    Page page;
+    page.show({{"text", crystal}, {"film", {{"frames", 3}, {"set", {{"spread", "wide"}}}}}});
+    page.work();
+    EXPECT_NE(page.last("fault"), nlohmann::json());
 }
 
 } // namespace

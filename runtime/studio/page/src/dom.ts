@@ -86,10 +86,15 @@ export interface Drag {
   end?(event: PointerEvent): void;
 }
 
-/** A number as a person writes it: no more digits than `step` can tell apart. */
-export function plain_number(value: number, step = 0): string {
+/** The number as far as steps of this length tell it from others: by the power of ten that is no longer. 0: as it is. */
+export function rounded(value: number, step: number): number {
+  if (!(step > 0)) return value;
+  const decade = Math.floor(Math.log10(step) + 1e-9);
+  return decade < 0 ? Number(value.toFixed(Math.min(100, -decade))) : Math.round(value / 10 ** decade) * 10 ** decade;
+}
+
+/** A number as a person writes it. */
+export function plain_number(value: number): string {
   if (!Number.isFinite(value)) return '0';
-  const digits = step > 0 ? Math.min(12, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9))) : 6;
-  const text = value.toFixed(digits);
-  return digits > 0 && step <= 0 ? text.replace(/\.?0+$/, '') : text;
+  return String(Number(Math.abs(value) < 1 ? value.toPrecision(6) : value.toFixed(6)));
 }

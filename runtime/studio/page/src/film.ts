@@ -12,7 +12,7 @@ export function values_at(keys: KeyFrame[], seconds: number): Values {
     const own = keys.filter(({ set }) => name in set), after = own.findIndex((key) => key.seconds > seconds);
     const b = own[after], a = after < 0 ? own.at(-1)! : own[after - 1];
     if (!b || !a) values[name] = (b ?? a)!.set[name]!;
-    else values[name] = a.set[name]! + ((b.set[name]! - a.set[name]!) * (seconds - a.seconds)) / (b.seconds - a.seconds);
+    else values[name] = Number((a.set[name]! + ((b.set[name]! - a.set[name]!) * (seconds - a.seconds)) / (b.seconds - a.seconds)).toPrecision(7));
   }
   return values;
 }
@@ -139,7 +139,8 @@ export class Film {
     return this.studio.history.now.name.replace(/^.*[\\/]/, '').replace(/\.\w+$/, '') + this.kind.value;
   }
 
-  private film(): object {
+  /** As asks and states have it. */
+  film(): object {
     const { keys } = this.studio.history.now, { seconds, steps } = this.course(), fps = Number(this.fps.value) || 25;
     return {
       frames: Math.max(2, Math.round(seconds * fps)), fps, steps,

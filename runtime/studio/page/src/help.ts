@@ -24,6 +24,7 @@ const parts: [string, [string, string][]][] = [
     ['double click on a number, or Enter', 'type it'],
   ]],
   ['Maps', [
+    ['click on a box', 'select the map in the text; a second click, the part that is there'],
     ['drag a box', 'move the map'],
     ['corner, edge, knob', 'scale; stretch and shear; turn'],
     ['arrow keys', 'move; with Shift turn and scale'],

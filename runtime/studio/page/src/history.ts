@@ -83,10 +83,10 @@ export class History {
     this.changed('history');
   }
 
-  /** Begins again with a model that was opened. If the page was reloaded, finds what was there before. */
-  open(first: Choices): void {
-    const kept = this.load();
-    if (kept && kept.entries[0]?.name === first.name) {
+  /** Begins again with a model that was opened. If the page was reloaded, finds what was there before, and gives true. */
+  open(first: Choices): boolean {
+    const kept = this.load(), again = kept?.entries[0]?.name === first.name;
+    if (kept && again) {
       this.entries = kept.entries;
       this.at = kept.at;
       // The file was changed outside since: its text is one more step, and nothing is lost.
@@ -97,6 +97,7 @@ export class History {
     }
     this.key = null;
     this.changed('open');
+    return again;
   }
 
   /** Keeps it over a reload. Texts that are equal are kept once. */

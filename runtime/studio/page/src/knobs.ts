@@ -9,10 +9,12 @@ interface Row {
   element: HTMLElement;
   reset: HTMLButtonElement;
   write: HTMLButtonElement | null;
+  /** By text, the value that it gives: as far as models have told, or a knob was written. The newest stands at the end. */
+  own: Map<string, number>;
 }
 
 /** A model may have thousands of parameters: the page stays quick, and shows the first. */
-const most_shown = 64;
+const most_shown = 64, most_texts = 100;
 const is_common = (name: string) => name === 'steps' || name === 'seed';
 const groups: [Parameter['kind'], string][] = [['let', 'Values'], ['inner', 'Inner values'], ['setting', 'Settings']];
 
@@ -22,6 +24,25 @@ export class Knobs {
   private shape = '';
 
   constructor(private readonly studio: Studio) {}
+
+  /** A model of the state that is shown came. */
+  model_came(): void {
+    this.show();
+    const { model, history: { now } } = this.studio;
+    for (const [name, row] of this.rows) {
+      const key = name === ': steps' ? 'steps' : name === ': seed' ? 'seed' : null;
+      if (key) {
+        const value = this.model_value(key);
+        if (now[key] === null && value !== null) note_own(row, now.text, value);
+        continue;
+      }
+      const { literal, value, from, to } = model!.parameters.find((one) => one.name === name)!;
+      const written = literal && from !== undefined ? Number(now.text.slice(from, to)) : NaN;
+      if (Number.isFinite(written)) note_own(row, now.text, written);
+      else if (!(name in now.set)) note_own(row, now.text, value);
+    }
+    this.show();
+  }
 
   show(): void {
     const { model, history } = this.studio;
@@ -35,14 +56,15 @@ export class Knobs {
     for (const parameter of parameters) {
       const row = this.rows.get(parameter.name);
       if (!row) continue;
-      const [least, most] = range_of(parameter);
+      // The range is that of the text's value: it stays while the knob turns.
+      const value = own_of(row, history.now.text) ?? parameter.value, [least, most] = range_of({ ...parameter, value });
       const { set } = history.now, changed = parameter.name in set;
-      row.slider.show(changed ? set[parameter.name]! : parameter.value, least, most);
+      row.slider.show(changed ? set[parameter.name]! : value, least, most);
       row.reset.disabled = !changed;
       if (row.write) row.write.disabled = !changed;
     }
     for (const key of ['steps', 'seed'] as const) {
-      const row = this.rows.get(`: ${key}`)!, chosen = history.now[key], own = this.model_value(key), value = chosen ?? own ?? 0;
+      const row = this.rows.get(`: ${key}`)!, chosen = history.now[key], own = own_of(row, history.now.text) ?? this.model_value(key), value = chosen ?? own ?? 0;
       row.slider.show(value, 0, Math.max(key === 'steps' ? 12 : 100, 2 * (own ?? 0)), chosen === null && own === null ? '–' : undefined);
       row.reset.disabled = chosen === null;
     }
@@ -91,7 +113,9 @@ export class Knobs {
     const parameter = this.studio.model?.parameters.find((one) => one.name === name);
     const { set: { [name]: value, ...set }, text } = this.studio.history.now;
     if (!parameter || parameter.from === undefined || parameter.to === undefined || value === undefined) return;
-    this.studio.change({ set, text: text.slice(0, parameter.from) + String(value) + text.slice(parameter.to) });
+    const written = text.slice(0, parameter.from) + String(value) + text.slice(parameter.to);
+    note_own(this.rows.get(name)!, written, value);
+    this.studio.change({ set, text: written });
   }
 
   private choice_row(key: 'steps' | 'seed', label: string): HTMLElement {
@@ -111,9 +135,20 @@ export class Knobs {
 
   private row(key: string, label: string, slider: Slider, reset: HTMLButtonElement, write: HTMLButtonElement | null): HTMLElement {
     const made = element('div', { class: 'knob' }, element('span', { class: 'name', title: label }, label), slider.range, slider.number, reset, write);
-    this.rows.set(key, { slider, element: made, reset, write });
+    this.rows.set(key, { slider, element: made, reset, write, own: new Map() });
     return made;
   }
+}
+
+function note_own({ own }: Row, text: string, value: number): void {
+  own.delete(text);
+  own.set(text, value);
+  if (own.size > most_texts) own.delete(own.keys().next().value!);
+}
+
+/** What the text gives, or else the text that was read last. */
+function own_of({ own }: Row, text: string): number | undefined {
+  return own.get(text) ?? [...own.values()].at(-1);
 }
 
 /** Whether the text writes a parameter without a decimal point. */

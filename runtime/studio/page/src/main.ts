@@ -65,7 +65,7 @@ class Page implements Studio, Listener {
       this.tell_done();
     });
     const layer = (id: string) => by_id(id) as unknown as SVGSVGElement;
-    this.maps = new Maps(layer('maps-layer'), this, (event) => void this.point.pick(...this.view.at(event)));
+    this.maps = new Maps(layer('maps-layer'), this, (event) => void this.point.pick(...this.view.at(event)).then(() => this.maps.draw()));
     this.digraph = new Digraph(this);
     this.point = new PointTool(layer('point-layer'), by_id('picked'), this);
     this.view = new ViewControl(by_id('view'), this.picture.canvas, this, (x, y) => void this.point.pick(x, y));
@@ -73,7 +73,7 @@ class Page implements Studio, Listener {
     this.knobs = new Knobs(this);
     this.presets = new Presets(this);
     this.vary = new Vary(by_id('grid'), this);
-    this.time = new Time(this);
+    this.time = new Time(this, () => this.show());
     this.out = new Out(this, (choices) => this.change({ ...nothing, ...choices }));
     this.place = new Place(by_id<HTMLFormElement>('place'), this);
     this.tabs = new Tabs(by_id('tabs'), by_id('panels'), [
@@ -139,7 +139,10 @@ class Page implements Studio, Listener {
       void this.out.open_file(file);
     });
     new Divider(by_id('divider'), by_id('rooms'));
-    addEventListener('pagehide', () => history.save());
+    addEventListener('pagehide', () => {
+      history.save();
+      this.picture.keep();
+    });
     addEventListener('hashchange', () => void this.open_link());
   }
 
@@ -180,7 +183,7 @@ class Page implements Studio, Listener {
   }
 
   private show(): void {
-    this.session.show(this.history.now, this.size);
+    this.session.show({ ...this.history.now, film: this.time.shown_film }, this.size);
     this.tell_done();
   }
 
@@ -244,8 +247,8 @@ class Page implements Studio, Listener {
     this.out.hello();
     this.time.film.hello();
     if (!first) return this.show();
-    this.history.open({ ...nothing, name: message.name, text: message.text });
-    await this.open_link();
+    const again = this.history.open({ ...nothing, name: message.name, text: message.text });
+    if (!(await this.open_link()) && again) await this.picture.show_kept();
     this.presets.show();
   }
 
@@ -257,8 +260,8 @@ class Page implements Studio, Listener {
 
   model_came(message: Model): void {
     this.model = message;
-    if (message.number !== this.session.number) return;
-    this.knobs.show();
+    if (message.number !== this.session.number || this.session.holds) return;
+    this.knobs.model_came();
     this.time.model_came();
     this.maps.model_came();
     this.digraph.show();

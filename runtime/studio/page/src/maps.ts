@@ -1,17 +1,21 @@
 // The maps of the model as boxes over the picture, with handles: the box moves, a corner scales, an edge stretches and
 // shears, the knob turns. The text follows by the ask `map`.
 import { element, draggable, svg, type Drag } from './dom';
+import { covers_of, reachable, type Place } from './reach';
 import { latest, type Studio } from './studio';
 import type { Box, Camera, Edit, Matrix, ModelMap, Vec3 } from './protocol';
-import { about, add, column, compose, corner, cross, dot, dragged, length, map_point, matrix_of, middle, projected, subtract, times, turned, unit, view_of } from './vectors';
+import { about, add, column, compose, corner, cross, dot, dragged, length, map_point, matrix_of, middle, projected, subtract, times, turned, unit, units_of_pixel, view_of } from './vectors';
 
 /** A model may have thousands of maps: the page stays quick, and shows the first. */
 const most_shown = 64;
+const handle_px = 7, stem_px = 26, double_click_ms = 400;
 const hues = [212, 28, 145, 275, 350, 60, 185, 320];
 
 interface Wish {
   map: ModelMap;
   matrix: Matrix;
+  /** What a pixel of the screen shows there. */
+  grain: number;
 }
 
 export class Maps {
@@ -21,10 +25,13 @@ export class Maps {
   private readonly refused = new Map<string, string>();
   private chosen: string | null = null;
   private dragging = false;
+  private clicked: { name: string; ms: number } | null = null;
   private readonly ask: (wish: Wish) => void;
 
   constructor(
-    private readonly overlay: SVGSVGElement, private readonly studio: Studio, private readonly pick: (event: PointerEvent) => void,
+    private readonly overlay: SVGSVGElement, private readonly studio: Studio,
+    /** A double click on a box is one on the picture. */
+    private readonly pick: (event: PointerEvent) => void,
   ) {
     this.ask = latest((wish) => this.ask_now(wish));
     // The overlay holds the pointer: its shapes are made anew while they are dragged.
@@ -137,6 +144,8 @@ export class Maps {
 
   private handles(map: ModelMap, index: number, camera: Camera, flat: number | null): SVGGElement {
     const { width_px, height_px } = this.studio.size, matrix = this.matrix_of(map), { box } = map, scale = this.px_scale();
+    const covers = covers_of(this.overlay, ['tools', 'place', 'status', 'picked', 'stale'], scale);
+    const reach = (place: Place) => reachable(place, { left: 0, top: 0, right: width_px, bottom: height_px }, covers, handle_px * scale);
     const at = (point: Vec3) => projected(camera, width_px, height_px, map_point(matrix, point));
     const group = svg('g', { 'data-of': map.name, class: `handles${this.refused.has(map.name) ? ' bad' : ''}`, style: `--hue:${hues[index % hues.length]}` });
     if (!map.movable) return group;
@@ -145,22 +154,30 @@ export class Maps {
       for (const side of [0, 1]) {
         const point = middle(box);
         point[axis] = (side ? box.most : box.least)[axis]!;
-        const place = at(point);
+        const seen = at(point), place = seen && reach(seen);
         if (place) group.append(svg('circle', { class: 'handle edge', 'data-handle': `edge ${axis} ${side}`, cx: place[0], cy: place[1], r: 5 * scale }));
       }
     }
-    for (const [bit, place] of corners) {
-      if (!place) continue;
+    for (const [bit, seen] of corners) {
+      if (!seen) continue;
+      const place = reach(seen);
       group.append(svg('rect', {
         class: 'handle corner', 'data-handle': `corner ${bit}`, x: place[0] - 5.5 * scale, y: place[1] - 5.5 * scale, width: 11 * scale, height: 11 * scale,
       }));
     }
     const seen = corners.map(([, place]) => place).filter((p): p is [number, number] => p !== null), centre = at(middle(box));
     if (!seen.length || !centre) return group;
-    const top = Math.min(...seen.map(([, y]) => y));
+    // The knob stands above the box, or else where there is room.
+    const [x, y] = centre, stem = stem_px * scale, xs = seen.map(([px]) => px), ys = seen.map(([, py]) => py);
+    const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+    const stems: [Place, Place][] = [
+      [[x, top], [x, top - stem]], [[x, bottom], [x, bottom + stem]], [[right, y], [right + stem, y]], [[left, y], [left - stem, y]],
+    ];
+    const there = ([px, py]: Place) => reach([px, py]).every((value, i) => value === [px, py][i]);
+    const [foot, knob] = stems.find(([, end]) => there(end)) ?? [reach(centre), reach([reach(centre)[0], reach(centre)[1] - stem])];
     group.append(
-      svg('path', { class: 'stem', d: `M${centre[0]} ${top}V${top - 26 * scale}` }),
-      svg('circle', { class: 'handle turn', 'data-handle': 'turn', cx: centre[0], cy: top - 26 * scale, r: 6 * scale }),
+      svg('path', { class: 'stem', d: `M${foot.join(' ')}L${knob.join(' ')}` }),
+      svg('circle', { class: 'handle turn', 'data-handle': 'turn', cx: knob[0], cy: knob[1], r: 6 * scale }),
     );
     return group;
   }
@@ -231,14 +248,19 @@ export class Maps {
       },
       end: (up) => {
         this.dragging = false;
-        if (up.clientX === event.clientX && up.clientY === event.clientY) {
-          this.studio.select(map.from, map.to);
-          this.pick(up);
-        }
+        if (up.clientX === event.clientX && up.clientY === event.clientY) this.click(up, map);
         this.let_go();
         this.draw();
       },
     };
+  }
+
+  /** One click selects the map; the second, soon after it, the part that the picture shows there. */
+  private click(event: PointerEvent, map: ModelMap): void {
+    const twice = this.clicked?.name === map.name && event.timeStamp - this.clicked.ms < double_click_ms;
+    this.clicked = twice ? null : { name: map.name, ms: event.timeStamp };
+    if (twice) this.pick(event);
+    else this.studio.select(map.from, map.to);
   }
 
   /** A map that was refused goes back to where the text has it. */
@@ -273,13 +295,15 @@ export class Maps {
   private wish(map: ModelMap, matrix: Matrix): void {
     this.ahead.set(map.name, matrix);
     this.draw();
-    this.ask({ map, matrix });
+    const { camera } = this.studio;
+    const grain = camera ? units_of_pixel(camera, this.overlay.getBoundingClientRect().width, map_point(matrix, middle(map.box))) : 0;
+    this.ask({ map, matrix, grain });
   }
 
-  private async ask_now({ map, matrix }: Wish): Promise<void> {
+  private async ask_now({ map, matrix, grain }: Wish): Promise<void> {
     const { session, history } = this.studio, before = history.now.text;
     try {
-      const answer = await session.ask('map', { name: map.name, matrix });
+      const answer = await session.ask('map', { name: map.name, matrix, grain });
       if (history.now.text !== before) return;
       if (answer['contracts'] === false) this.refused.set(map.name, String(answer['why'] ?? 'It would not shrink.'));
       else this.refused.delete(map.name);

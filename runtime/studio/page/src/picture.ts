@@ -5,12 +5,14 @@ import type { Size } from './session';
 const longest_hold_ms = 150, frame_share_ms = 12;
 /** Pictures of larger blocks tell less than the last good picture: finer ones have a moment to come first. */
 const largest_block_px = 16, block_hold_ms = 40;
+const storage_key = 'graftal picture', kept_quality = 0.85;
 
 interface Ready {
   tile: Tile;
   samples: Uint8Array | null;
 }
 
+/** The canvas is hidden until it shows a picture. */
 export class Picture {
   /** Number of the state whose picture is shown; 0: none yet. */
   shown = 0;
@@ -25,6 +27,33 @@ export class Picture {
 
   constructor(readonly canvas: HTMLCanvasElement, private readonly painted: (number: number) => void) {
     this.context = canvas.getContext('2d', { alpha: false })!;
+    canvas.hidden = true;
+  }
+
+  /** Keeps what is shown over a reload. */
+  keep(): void {
+    try {
+      if (this.canvas.hidden) sessionStorage.removeItem(storage_key);
+      else sessionStorage.setItem(storage_key, this.canvas.toDataURL('image/jpeg', kept_quality));
+    } catch {
+      // Storage that is full or forbidden: the picture is drawn anew.
+    }
+  }
+
+  /** Shows what was kept, unless a picture has come already. */
+  async show_kept(): Promise<void> {
+    try {
+      const kept = new Image();
+      kept.src = sessionStorage.getItem(storage_key) ?? '';
+      await kept.decode();
+      if (!this.canvas.hidden) return;
+      this.canvas.width = kept.width;
+      this.canvas.height = kept.height;
+      this.context.drawImage(kept, 0, 0);
+      this.canvas.hidden = false;
+    } catch {
+      // Nothing was kept.
+    }
   }
 
   /** Tells the size of the picture that a state asks for. */
@@ -113,6 +142,7 @@ export class Picture {
     this.shown = number;
     this.coarse_pass = 0;
     const { canvas } = this;
+    canvas.hidden = false;
     if (canvas.width === width_px && canvas.height === height_px) return;
     const old = document.createElement('canvas');
     old.width = canvas.width;

@@ -2,7 +2,7 @@
 import { draggable, element, svg } from './dom';
 import { latest, type Studio } from './studio';
 import type { Edit, Vec3 } from './protocol';
-import { dragged, projected } from './vectors';
+import { dragged, projected, units_of_pixel } from './vectors';
 
 interface Picked {
   point: Vec3;
@@ -19,6 +19,8 @@ export class PointTool {
   private lies: Vec3 = [0, 0, 0];
   /** Where the number begins that a drag of an L-system's part changes; null: the next drag chooses one. */
   private number: number | null = null;
+  /** What stood there before the drag. */
+  private was = '';
   private held = false;
   private readonly ask: (to: Vec3) => void;
 
@@ -76,6 +78,8 @@ export class PointTool {
     const { width } = this.overlay.getBoundingClientRect(), scale = width > 0 ? size.width_px / width : 1;
     const old = this.overlay.querySelector<SVGCircleElement>('circle');
     const marker = old ?? this.marker();
+    // The card lies where the dot does not.
+    this.card.classList.toggle('high', place[1] > size.height_px / 2);
     marker.setAttribute('cx', String(place[0]));
     marker.setAttribute('cy', String(place[1]));
     marker.setAttribute('r', String(7 * scale));
@@ -114,6 +118,12 @@ export class PointTool {
     this.draw();
   }
 
+  /** What a pixel of the screen shows at the point. */
+  private get grain(): number {
+    const { camera } = this.studio;
+    return camera && this.picked ? units_of_pixel(camera, this.overlay.getBoundingClientRect().width, this.picked.point) : 0;
+  }
+
   private get is_lsys(): boolean {
     return this.studio.history.now.name.toLowerCase().endsWith('.lsys');
   }
@@ -127,8 +137,8 @@ export class PointTool {
     if (!picked) return;
     try {
       const answer = this.is_lsys
-        ? await studio.session.ask('drag', { part: picked.part, from: this.lies, to, number: this.number })
-        : await studio.session.ask('pull', { address: picked.address, from: this.lies, to });
+        ? await studio.session.ask('drag', { part: picked.part, from: this.lies, to, number: this.number, grain: this.grain })
+        : await studio.session.ask('pull', { address: picked.address, from: this.lies, to, grain: this.grain });
       if (studio.history.now.text !== before) return;
       if (answer['contracts'] === false) {
         studio.say(String(answer['why'] ?? 'The maps would not shrink.'));
@@ -138,9 +148,11 @@ export class PointTool {
       studio.edit(edits, 'pull');
       this.lies = (answer['point'] as Vec3 | undefined) ?? to;
       if (!this.is_lsys) return;
+      const { from, to: end, text } = edits[0]!;
+      if (this.number === null) this.was = before.slice(from, end);
       this.number = answer['number'] as number;
-      studio.select(edits[0]!.from, edits[0]!.from + edits[0]!.text.length);
-      studio.say(String(answer['says']));
+      studio.select(from, from + text.length);
+      studio.say(`line ${before.slice(0, from).split('\n').length}: ${this.was} became ${text}`);
     } catch (error) {
       // A number that has done what it can lets the hand go on.
       if (this.number === null) studio.say((error as Error).message);

@@ -24,16 +24,18 @@ export function number_at(state: EditorState, offset: number): Literal | null {
   return null;
 }
 
-/** The number that a drag of so many coarse and fine pixels makes of a literal. */
+/** The number that a drag of so many coarse and fine pixels makes of a literal, with the digits that the drag can tell. */
 export function dragged_number(text: string, coarse_px: number, fine_px: number): string {
   const value = Number(text), whole = /^-?\d+$/.test(text);
   const decade = value === 0 ? 1 : 10 ** Math.floor(Math.log10(Math.abs(value)));
-  const decimals = Math.max(0, (/\.(\d*)/.exec(text)?.[1] ?? '').length);
+  const decimals = (/\.(\d*)/.exec(text)?.[1] ?? '').length;
   const per_px = whole ? Math.max(0.2, decade / 50) : decade / 50;
   const moved = value + per_px * (coarse_px + fine_px / 10);
-  const least = whole ? 0 : Math.max(decimals, Math.ceil(-Math.log10(decade)) + 1);
-  const digits = Math.min(12, fine_px !== 0 ? least + 1 : least);
-  const made = moved.toFixed(digits);
+  // As many decimals as the text has, unless a pixel tells fewer apart.
+  const coarsest = Math.round(-Math.log10(decade)) + 1;
+  const least = whole ? 0 : Math.max(0, coarsest, Math.min(decimals, coarsest + 1));
+  const made = moved.toFixed(Math.min(100, fine_px !== 0 ? least + 1 : least));
+  if (/e/i.test(text)) return String(Number(made));
   return fine_px !== 0 && whole ? made.replace(/\.0+$/, '') : made.replace(/^-(0(?:\.0*)?)$/, '$1');
 }
 

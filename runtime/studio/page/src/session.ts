@@ -11,6 +11,9 @@ export interface Size {
   height_px: number;
 }
 
+/** What a picture is asked for with: `film` is the one whose view it has. */
+type Shown = Choices & { film: object | null };
+
 export interface Listener {
   /** A state left with this number, for a picture of this size. */
   sent(number: number, size: Size): void;
@@ -36,7 +39,7 @@ export class Session {
   number = 0;
   private next_id = first_id;
   private readonly asked = new Map<number, { resolve: (answer: Answer) => void; reject: (error: Error) => void }>();
-  private waiting: { choices: Choices; size: Size } | null = null;
+  private waiting: { choices: Shown; size: Size } | null = null;
   private sent_text: string | null = null;
   private sent_ms = 0;
   private latency_ms = 50;
@@ -65,7 +68,7 @@ export class Session {
   }
 
   /** Sends the state now, or as soon as the picture of the state before has begun; a later one takes its place. */
-  show(choices: Choices, size: Size): void {
+  show(choices: Shown, size: Size): void {
     this.waiting = { choices, size };
     const wait_ms = Math.min(most_wait_ms, Math.max(least_wait_ms, 1.5 * this.latency_ms));
     const left_ms = this.under_way ? this.sent_ms + wait_ms - performance.now() : 0;

@@ -1,5 +1,5 @@
 // A slider: coarse by drag, fine with shift, typed after a double click (or Enter on the number).
-import { element, plain_number, set_attributes } from './dom';
+import { element, plain_number, rounded, set_attributes } from './dom';
 
 export interface SliderOptions {
   label: string;
@@ -14,22 +14,24 @@ export interface SliderOptions {
 export class Slider {
   readonly range: HTMLInputElement;
   readonly number: HTMLButtonElement;
+  /** Where the hand is: the value that is shown is rounded. */
   private exact: number;
+  private shown: number;
 
   constructor(private readonly options: SliderOptions) {
-    this.exact = options.value;
+    this.exact = this.shown = options.value;
     this.range = element('input', { type: 'range', 'aria-label': options.label });
     this.number = element('button', { type: 'button', class: 'number', title: 'Double-click to type a number' });
     this.range.addEventListener('pointerdown', (event) => this.drag(event));
     this.range.addEventListener('keydown', (event) => this.key(event));
     // Assistive technology sets values without a pointer or key.
-    this.range.addEventListener('input', () => this.put(Number(this.range.value)));
+    this.range.addEventListener('input', () => this.put(Number(this.range.value), this.step));
     this.number.addEventListener('dblclick', () => this.type());
     this.number.addEventListener('click', (event) => event.detail === 0 && this.type());
     this.show(options.value, options.least, options.most);
   }
 
-  /** What each key step, or each drag of one pixel, may change: a hundredth, or finer where the range is small. */
+  /** What each key step may change: a hundredth, or less. */
   private get step(): number {
     return this.options.whole ? 1 : 10 ** Math.floor(Math.log10((this.options.most - this.options.least || 1) / 90));
   }
@@ -38,7 +40,8 @@ export class Slider {
   show(value: number, least: number, most: number, as_it_is?: string): void {
     this.options.least = Math.min(least, value);
     this.options.most = Math.max(most, value);
-    if (Math.abs(value - this.exact) > 1e-12) this.exact = value;
+    if (value !== this.shown) this.exact = value;
+    this.shown = value;
     set_attributes(this.range, { min: this.options.least, max: this.options.most, step: this.options.whole === 'always' ? 1 : 'any' });
     this.range.value = String(value);
     const text = as_it_is ?? plain_number(value);
@@ -47,14 +50,15 @@ export class Slider {
     this.range.style.setProperty('--share', String((value - this.options.least) / (this.options.most - this.options.least || 1)));
   }
 
-  private put(value: number, fine = false): void {
+  /** `step`: what the hand can tell; 0: everything. */
+  private put(value: number, step: number, fine = false): void {
     const { least, most, whole, change } = this.options;
-    this.exact = Math.max(least, Math.min(most, value));
-    const rounded = whole === 'always' || (whole && !fine) ? Math.round(this.exact) : Number(this.exact.toPrecision(6));
-    const exact = this.exact;
-    this.show(rounded, least, most);
+    const exact = Math.max(least, Math.min(most, value));
+    const whole_step = whole === 'always' || (whole && !fine) ? 1 : step;
+    const written = exact === least || exact === most ? exact : Math.max(least, Math.min(most, rounded(exact, whole_step)));
+    this.show(written, least, most);
     this.exact = exact;
-    change(rounded);
+    change(written);
   }
 
   private drag(down: PointerEvent): void {
@@ -63,13 +67,13 @@ export class Slider {
     const { range } = this, box = range.getBoundingClientRect();
     range.focus();
     range.setPointerCapture(down.pointerId);
-    const span = () => this.options.most - this.options.least;
-    if (!down.shiftKey) this.put(this.options.least + ((down.clientX - box.left - 8) / (box.width - 16)) * span());
+    const per_px = () => (this.options.most - this.options.least) / Math.max(1, box.width - 16);
+    if (!down.shiftKey) this.put(this.options.least + (down.clientX - box.left - 8) * per_px(), per_px());
     let last = down;
     const move = (event: PointerEvent) => {
-      const by = ((event.clientX - last.clientX) / (box.width - 16)) * span();
+      const by = event.shiftKey ? per_px() / 20 : per_px(), px = event.clientX - last.clientX;
       last = event;
-      this.put(this.exact + (event.shiftKey ? by / 20 : by), event.shiftKey);
+      if (px) this.put(this.exact + px * by, by, event.shiftKey);
     };
     const up = () => {
       range.removeEventListener('pointermove', move);
@@ -87,16 +91,15 @@ export class Slider {
     const steps = by[event.key];
     let value: number;
     if (steps !== undefined) {
-      const fine = event.shiftKey && this.options.whole !== 'always';
-      value = Number((this.exact + steps * (fine ? 0.1 : 1) * this.step).toFixed(12));
+      const fine = event.shiftKey && this.options.whole !== 'always', step = (fine ? 0.1 : 1) * this.step;
       event.preventDefault();
-      return this.put(value, fine);
+      return this.put(this.exact + steps * step, step, fine);
     } else if (event.key === 'Home') value = least;
     else if (event.key === 'End') value = most;
     else if (event.key === 'Enter') return this.type();
     else return;
     event.preventDefault();
-    this.put(value);
+    this.put(value, 0);
   }
 
   private type(): void {
@@ -113,7 +116,7 @@ export class Slider {
       if (!keep || input.value.trim() === '' || !Number.isFinite(value)) return;
       this.options.least = Math.min(this.options.least, value);
       this.options.most = Math.max(this.options.most, value);
-      this.put(value, true);
+      this.put(value, 0, true);
     };
     input.addEventListener('keydown', (event) => {
       if (event.key === 'Enter') close(true);

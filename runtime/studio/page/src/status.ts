@@ -27,7 +27,7 @@ export class Status {
 
   findings(findings: Findings['findings']): void {
     const errors = findings.filter(({ severity }) => severity === 'error'), first = errors[0] ?? findings[0];
-    this.stale.hidden = errors.length === 0 || this.studio.model === null;
+    this.stale.hidden = errors.length === 0;
     if (errors.length) {
       this.line.textContent = '';
       this.share(null, false);

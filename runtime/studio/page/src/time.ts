@@ -1,6 +1,6 @@
 // Time: a scrubber for the age or the steps, with play; key frames, and the film of both.
 import { element } from './dom';
-import { Film, values_at, type Course } from './film';
+import { Film, moving, values_at, type Course } from './film';
 import { Slider } from './slider';
 import type { Studio } from './studio';
 
@@ -17,10 +17,12 @@ export class Time {
   /** Where the film stands. */
   private now_seconds = 0;
   private playing = 0;
+  private is_shown = false;
   /** The model for which it was chosen whether the time runs. */
   private chosen_for = '';
 
-  constructor(private readonly studio: Studio) {
+  /** `moved`: the film is another one now. */
+  constructor(private readonly studio: Studio, private readonly moved: () => void) {
     const field = (id: string, value: number, label: string) => element('input', { id, type: 'number', value, 'aria-label': label, step: 'any' });
     this.ends = { least: field('time-least', 0, 'From'), most: field('time-most', 10, 'To'), seconds: field('time-seconds', 5, 'Seconds') };
     this.key = element('select', { id: 'time-key', 'aria-label': 'Time' }, element('option', { value: 'time' }, 'age'), element('option', { value: 'steps' }, 'steps'));
@@ -32,7 +34,12 @@ export class Time {
       },
     });
     this.play_button = element('button', { type: 'button', class: 'quiet', id: 'play', onclick: () => (this.playing ? this.stop() : this.play()) }, 'Play');
-    for (const input of [...Object.values(this.ends), this.runs]) input.onchange = () => this.show();
+    for (const input of [...Object.values(this.ends), this.runs]) {
+      input.onchange = () => {
+        this.show();
+        moved();
+      };
+    }
     this.key.onchange = () => {
       this.stop();
       this.show();
@@ -64,11 +71,21 @@ export class Time {
     if (is_lsys) this.ends.least.value = '1';
     if (steps !== undefined) this.ends.most.value = String(steps);
     this.show();
+    if (this.shown_film) this.moved();
   }
 
   tab(is_shown: boolean): void {
+    const was = this.shown_film;
+    this.is_shown = is_shown;
     if (is_shown) this.show();
     else this.stop();
+    if (JSON.stringify(was) !== JSON.stringify(this.shown_film)) this.moved();
+  }
+
+  /** The film whose view the picture has: while something moves in it, its moments are framed together. */
+  get shown_film(): object | null {
+    const moves = this.runs.checked || moving(this.studio.history.now.keys).length > 0;
+    return this.is_shown && moves ? this.film.film() : null;
   }
 
   stop(): void {

@@ -116,7 +116,7 @@ bool ProgressivePicture::step(const std::function<bool()>& cancelled, const std:
             end_pass(listener);
         return true;
     case Phase::denoise:
-        denoise_next(cancelled, listener);
+        denoise_next(cancelled, for_good, listener);
         return true;
     case Phase::done:
         break;
@@ -255,12 +255,15 @@ void ProgressivePicture::finish() {
         return;
     }
     phase_ = Phase::done;
-    for (Window& window : windows_)
-        window.meters = {}, window.features = {};
+    for (Window& window : windows_) {
+        window.meters = {};
+        window.features = {};
+    }
 }
 
 /// Traces the features of the next window, or denoises the picture after the last.
 void ProgressivePicture::denoise_next(const std::function<bool()>& cancelled,
+                                      const std::function<bool()>& for_good,
                                       const PictureListener& listener) {
     if (next_window_ == windows_.size()) {
         denoise_all(cancelled, listener);
@@ -271,6 +274,7 @@ void ProgressivePicture::denoise_next(const std::function<bool()>& cancelled,
     TraceControl control;
     control.workers = &workers_();
     control.cancelled = cancelled;
+    control.for_good = CancelFlag(for_good);
     PictureTracer tracer(*fitted_.model, limits_of(*prepared_.prepared, view(), wishes_));
     if (tracer.trace_features(sampling_->feature_rays(), control, window.tile, window.features))
         ++next_window_;

@@ -85,7 +85,8 @@ class ProgressivePicture {
     bool trace(const std::function<bool()>& cancelled, const std::function<bool()>& for_good,
                const PictureListener& listener);
     void end_pass(const PictureListener& listener);
-    void denoise_next(const std::function<bool()>& cancelled, const PictureListener& listener);
+    void denoise_next(const std::function<bool()>& cancelled, const std::function<bool()>& for_good,
+                      const PictureListener& listener);
     void denoise_all(const std::function<bool()>& cancelled, const PictureListener& listener);
     void finish();
     void plan_rough();

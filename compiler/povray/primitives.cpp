@@ -100,6 +100,21 @@ bool write_box(SdlWriter& out, const Primitive&, const Affine& a) {
     return true;
 }
 
+/// Without a matrix: POV-Ray 3.7 bounds what a plane cuts by the wrong numbers where a matrix scales the
+/// plane, and loses what lies beyond.
+bool write_plane(SdlWriter& out, const Primitive&, const Affine& a) {
+    // Upright on the images of x and z; below is where y falls, whichever way the map turns.
+    const Vec3 across = glm::cross(a.linear[2], a.linear[0]);
+    const double area = glm::length(across);
+    const double volume = glm::dot(across, a.linear[1]);
+    if (!(area > 0) || volume == 0) return false;
+    const Vec3 up = (volume < 0 ? -1 : 1) / area * across;
+    out << "plane { ";
+    out.vector(up, digits) << ", ";
+    out.number(glm::dot(up, a.translation), digits);
+    return true;
+}
+
 bool write_cylinder(SdlWriter& out, const Primitive&, const Affine& a) {
     const Mat3& m = a.linear;
     if (!keeps_round(m) || !is_large_enough(m)) return false;
@@ -125,7 +140,7 @@ std::string cone_text(const Primitive& primitive) {
     return "cone { 0, 1, y, " + shortest(top_radius(primitive));
 }
 
-bool stays_triangle(const Mat3&) {
+bool any_map(const Mat3&) {
     return true;
 }
 
@@ -188,7 +203,7 @@ constexpr PovrayPrimitive row_of(PrimitiveKind kind) {
         return {[](const Primitive&) -> std::string {
                     return "triangle { <0,1,0>, <-0.86602540378443865,-0.5,0>, <0.86602540378443865,-0.5,0>";
                 },
-                write_triangle, stays_triangle, costs<400>};
+                write_triangle, any_map, costs<400>};
     case PrimitiveKind::sphere:
         return {[](const Primitive&) -> std::string { return "sphere { 0, 1"; },
                 write_sphere,
@@ -204,7 +219,8 @@ constexpr PovrayPrimitive row_of(PrimitiveKind kind) {
                 nullptr,
                 true};
     case PrimitiveKind::plane:
-        return {[](const Primitive&) -> std::string { return "plane { y, 0"; }, nullptr, nullptr, costs<336>};
+        return {[](const Primitive&) -> std::string { return "plane { y, 0"; }, write_plane, any_map,
+                costs<336>};
     case PrimitiveKind::cylinder:
         return {[](const Primitive&) -> std::string { return "cylinder { 0, y, 1"; }, write_cylinder,
                 keeps_round, costs<640>};

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <regex>
 #include <set>
+#include <sstream>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "runtime/system/file.h"
@@ -88,6 +90,75 @@ TEST_F(Papers, TreeWithoutChanceIsSymmetric) {
     const Json bounds = stats("tree.inst")["bounds"];
     for (const int axis : {0, 2})
         EXPECT_NEAR(bounds["min"][axis].get<double>(), -bounds["max"][axis].get<double>(), 1e-9);
+}
+
+TEST_F(Papers, BranchesOfAPlantWearTheSquareOfTableOne) {
+    // Han 2007: trunk(x, y, r, k1, k2). A branch 0.2 wide and 0.9 long, at the origin, upright.
+    write("branch.inst", "use trunk = \"" + source_path("scenes/plants/trunk_block.inst") +
+                             "\"\nobject branch { trunk  scale: 0.2, 0.9 }\n");
+    const Json bounds = stats("branch.inst")["bounds"];
+    const double slack = 0.002; // the tile is a little larger than its square
+    EXPECT_NEAR(bounds["min"][0].get<double>(), -0.1, slack);
+    EXPECT_NEAR(bounds["max"][0].get<double>(), 0.1, slack);
+    EXPECT_NEAR(bounds["min"][1].get<double>(), 0, slack);
+    EXPECT_NEAR(bounds["max"][1].get<double>(), 0.9, 2 * slack);
+    // Its four maps halve the square, in the proportions of the table.
+    const std::string printed = graftal("print branch.inst").out;
+    for (const char* const chance : {"0.15", "0.35"})
+        EXPECT_NE(printed.find(fmt::format("chance: {}", chance)), std::string::npos) << printed;
+    // The plant's first stretch: half a unit long, a tenth wide.
+    write("plant.inst", "use plant = \"" + source_path("scenes/plants/leafy_plant.lsys") +
+                            "\"\nobject whole { plant(0, 1) }\n");
+    EXPECT_NE(graftal("print --exact plant.inst").out.find("matrix: 0.1, 0, 0, 0, 0, 0.5, 0, 0,"),
+              std::string::npos);
+}
+
+TEST_F(Papers, LeavesOfTheTreeWithoutChanceMirrorToo) {
+    // A whorl of leaves, and a bough with its twigs: either side of the bough's plane, which is that of x =
+    // 0.
+    for (const char* part : {"K(0.1)", "B(1,0.1)"}) {
+        write("part.lsys", std::regex_replace(with_axiom("scenes/plants/tree_plain.lsys", part),
+                                              std::regex("\"([a-z_]+\\.(png|rifs))\""),
+                                              "\"" + source_path("scenes/plants/") + "$1\""));
+        const Json bounds = stats("part.lsys --steps 3")["bounds"];
+        const double left = bounds["min"][0].get<double>(), right = bounds["max"][0].get<double>();
+        EXPECT_GT(right, 0.05) << part;
+        EXPECT_NEAR(left, -right, 1e-4 * right) << part;
+    }
+}
+
+/// x and y of the image of (0, 1/2) under each map of a used model, in its printed graph.
+std::set<std::pair<std::string, std::string>> images_of_the_middle(const std::string& printed) {
+    static const std::regex line("(instance|union): leaf[^\n]*\n +matrix: ([^\n]*)");
+    std::set<std::pair<std::string, std::string>> images;
+    for (std::sregex_iterator at(printed.begin(), printed.end(), line), end; at != end; ++at) {
+        std::vector<double> row; // a b . e, c d . f
+        std::istringstream numbers(std::regex_replace((*at)[2].str(), std::regex(","), " "));
+        for (double number; numbers >> number;)
+            row.push_back(number);
+        images.emplace(fmt::format("{:.9f}", row.at(3) + row[1] / 2 + 1),
+                       fmt::format("{:.9f}", row.at(7) + row[5] / 2 + 1));
+    }
+    return images;
+}
+
+TEST_F(Papers, LeafFamiliesKeepWhereTheirMapsTakeTheMiddle) {
+    // Fang and Li, section 3.2: e + b/2 and f + d/2 are those of the original parameters.
+    for (const char* const leaf : {"maple_leaf", "arbor_leaf", "bamboo_leaf"}) {
+        std::string before;
+        std::set<std::pair<std::string, std::string>> expected;
+        for (const char* const k : {"0.5", "0", "0.15", "0.8", "1"}) {
+            write("one.inst", fmt::format("use leaf = \"{}\"\nobject one {{ leaf({}{}) }}\n",
+                                          source_path(fmt::format("scenes/plants/{}.rifs", leaf)), k,
+                                          std::string_view(leaf) == "maple_leaf" ? ", 0.6" : ""));
+            const std::string printed = graftal("print one.inst").out;
+            EXPECT_NE(printed, before) << leaf << " " << k;
+            before = printed;
+            if (expected.empty()) expected = images_of_the_middle(printed);
+            EXPECT_EQ(expected.size(), 4u) << leaf;
+            EXPECT_EQ(images_of_the_middle(printed), expected) << leaf << " " << k;
+        }
+    }
 }
 
 TEST_F(Papers, LeavesAreMirrorImagesOfThemselves) {

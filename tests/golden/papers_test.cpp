@@ -26,7 +26,8 @@ class Papers : public CommandLine {
     }
 };
 
-/// The L-systems of a scene as far as its `main` one, or all of them, the last one with another axiom.
+/// The L-systems of a scene as far as its `main` one, or all of them, the last one with another axiom. They
+/// find the files that the scene finds.
 std::string with_axiom(const std::string& scene, const std::string& axiom) {
     std::string text;
     EXPECT_TRUE(read_text(source_path(scene), text).ok()) << scene;
@@ -34,7 +35,9 @@ std::string with_axiom(const std::string& scene, const std::string& axiom) {
         text.resize(whole);
     const std::size_t line = text.rfind("\n  axiom ");
     text.replace(line, text.find('\n', line + 1) - line, "\n  axiom " + axiom);
-    return std::regex_replace(text, std::regex("\nuse setting [^\n]*"), "");
+    text = std::regex_replace(text, std::regex("\nuse setting [^\n]*"), "");
+    const std::string folder = source_path(scene.substr(0, scene.rfind('/') + 1));
+    return std::regex_replace(text, std::regex("\"([a-z_./]+\\.(png|rifs|inst))\""), "\"" + folder + "$1\"");
 }
 
 TEST_F(Papers, FigureThreeStandsAsItsTurtleDrawsIt) {
@@ -74,6 +77,25 @@ TEST_F(Papers, TuftsOfBambooHaveThreeLeaves) {
         leaves.insert(std::stol(json["primitives"].get<std::string>()) / leaf);
     }
     EXPECT_EQ(leaves, (std::set<long>{3, 6, 9}));
+}
+
+TEST_F(Papers, OrgansOfBambooAreFrusta) {
+    // Section 3.2: a node B is two equal frusta that join at their wide ends, C a long one, D and D0 two
+    // unlike ones.
+    struct Organ {
+        const char* axiom;
+        std::vector<std::string> frusta; ///< the ratios of their radii
+    };
+    for (const Organ& organ : {Organ{"B(0,1,0)", {"0.75", "0.75"}}, Organ{"C(1)", {"0.625"}},
+                               Organ{"D(1)", {"0.5", "0.875"}}, Organ{"D0(1)", {"0.5", "0.875"}}}) {
+        write("organ.lsys", with_axiom("scenes/papers/bamboo.lsys", organ.axiom));
+        const std::string printed = graftal("print organ.lsys --steps 0").out;
+        std::vector<std::string> frusta;
+        static const std::regex line("instance: frustum\\(([^)]*)\\)");
+        for (std::sregex_iterator at(printed.begin(), printed.end(), line), end; at != end; ++at)
+            frusta.push_back((*at)[1].str());
+        EXPECT_EQ(frusta, organ.frusta) << organ.axiom << "\n" << printed;
+    }
 }
 
 TEST_F(Papers, StretchesOfTheCulmGrow) {
@@ -117,9 +139,7 @@ TEST_F(Papers, LeavesOfTheTreeWithoutChanceMirrorToo) {
     // A whorl of leaves, and a bough with its twigs: either side of the bough's plane, which is that of x =
     // 0.
     for (const char* part : {"K(0.1)", "B(1,0.1)"}) {
-        write("part.lsys", std::regex_replace(with_axiom("scenes/plants/tree_plain.lsys", part),
-                                              std::regex("\"([a-z_]+\\.(png|rifs))\""),
-                                              "\"" + source_path("scenes/plants/") + "$1\""));
+        write("part.lsys", with_axiom("scenes/plants/tree_plain.lsys", part));
         const Json bounds = stats("part.lsys --steps 3")["bounds"];
         const double left = bounds["min"][0].get<double>(), right = bounds["max"][0].get<double>();
         EXPECT_GT(right, 0.05) << part;

@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "compiler/graph/planes.h"
 #include "compiler/povray/costs.h"
 #include "compiler/primitives/polygon_rings.h"
 #include "compiler/primitives/tapered.h"
@@ -103,15 +104,11 @@ bool write_box(SdlWriter& out, const Primitive&, const Affine& a) {
 /// Without a matrix: POV-Ray 3.7 bounds what a plane cuts by the wrong numbers where a matrix scales the
 /// plane, and loses what lies beyond.
 bool write_plane(SdlWriter& out, const Primitive&, const Affine& a) {
-    // Upright on the images of x and z; below is where y falls, whichever way the map turns.
-    const Vec3 across = glm::cross(a.linear[2], a.linear[0]);
-    const double area = glm::length(across);
-    const double volume = glm::dot(across, a.linear[1]);
-    if (!(area > 0) || volume == 0) return false;
-    const Vec3 up = (volume < 0 ? -1 : 1) / area * across;
+    const std::optional<HalfSpace> half_space = half_space_under(a);
+    if (!half_space) return false;
     out << "plane { ";
-    out.vector(up, digits) << ", ";
-    out.number(glm::dot(up, a.translation), digits);
+    out.vector(half_space->up, digits) << ", ";
+    out.number(half_space->height, digits);
     return true;
 }
 

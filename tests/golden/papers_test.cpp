@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -178,6 +180,51 @@ TEST_F(Papers, LeafFamiliesKeepWhereTheirMapsTakeTheMiddle) {
             EXPECT_EQ(expected.size(), 4u) << leaf;
             EXPECT_EQ(images_of_the_middle(printed), expected) << leaf << " " << k;
         }
+    }
+}
+
+TEST_F(Papers, PlanesDivideSpaceAsABinaryTree) {
+    // Each space has a plane with two halves, and each half the space of the next plane.
+    const std::string dot =
+        graftal("graph --set planes=7 '" + source_path("scenes/plants/space_partition.inst") + "'").out;
+    std::map<std::string, std::string> number; // by label
+    static const std::regex node("(n[0-9]+) \\[label=\"([^\"]*)\"");
+    for (std::sregex_iterator at(dot.begin(), dot.end(), node), end; at != end; ++at)
+        number[(*at)[2]] = (*at)[1];
+    const auto leads = [&](const std::string& from, const std::string& to) {
+        EXPECT_TRUE(number.contains(from) && number.contains(to)) << from << " " << to;
+        return dot.find(fmt::format("{} -> {};", number[from], number[to])) != std::string::npos;
+    };
+    for (int i = 1; i <= 7; ++i)
+        for (const auto& [side, next] : {std::pair("left", 2 * i), std::pair("right", 2 * i + 1)}) {
+            const std::string half = fmt::format("{}({})", side, i), rest = fmt::format("subtree({})", next);
+            EXPECT_TRUE(leads(fmt::format("space({})", i), half)) << half;
+            EXPECT_TRUE(leads(half, fmt::format("{}_half", side))) << half;
+            EXPECT_TRUE(leads(half, rest)) << half;
+            if (next <= 7) {
+                EXPECT_TRUE(leads(rest, fmt::format("space({})", next))) << half;
+            }
+        }
+    EXPECT_TRUE(leads("left_half", "plane"));
+    EXPECT_FALSE(number.contains("subtree(16)"));
+}
+
+TEST_F(Papers, BoxesOfHalvesEndAtTheirPlanes) {
+    // A half's box is within its half space, on its plane where the subtree crosses that.
+    for (const auto& [half, sign] : {std::pair("left", -1.0), std::pair("right", 1.0)}) {
+        write("half.inst", fmt::format("use p = \"{}\"\nobject half {{ p.{}(1) }}\n",
+                                       source_path("scenes/plants/space_partition.inst"), half));
+        const Json bounds = stats("half.inst")["bounds"];
+        EXPECT_NEAR(bounds[sign < 0 ? "max" : "min"][0].get<double>(), 0.02 * sign, 1e-9);
+        EXPECT_GT(bounds[sign < 0 ? "min" : "max"][0].get<double>() * sign, 1);
+    }
+    // A plane askew: what it leaves of a cube is a corner.
+    write("corner.inst", "object corner { intersection: cube\n"
+                         "plane rotate: z, -45 translate: -1, -0.5, 0 }\n");
+    const Json bounds = stats("corner.inst")["bounds"];
+    for (const int axis : {0, 1}) {
+        EXPECT_NEAR(bounds["max"][axis].get<double>(), -0.5, 1e-9);
+        EXPECT_NEAR(bounds["min"][axis].get<double>(), -1, 1e-9);
     }
 }
 

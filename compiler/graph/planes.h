@@ -19,7 +19,7 @@ struct HalfSpace {
 
 /// The image of the half space below a plane; nothing if the map flattens space.
 std::optional<HalfSpace> half_space_under(const Affine& map);
-/// That of an instance which places a plane and nothing else, by however many objects.
+/// The half space of an instance that places a plane and nothing else, by however many objects.
 std::optional<HalfSpace> half_space_of(const Graph& graph, const Instance& instance);
 
 } // namespace graftal

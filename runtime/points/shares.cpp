@@ -52,7 +52,7 @@ class Shown {
     };
     using Smaller = std::less<>;
 
-    /// What the part shows as a whole; or 0, and its own parts are still to be looked at.
+    /// The share of the part as a whole; or 0, and its own parts are still to be looked at.
     double look_at(Walk<Part, Smaller>& walk, ObjectId object, const Affine& map) {
         Part part{object, map, transformed(map, model_.bounds[object].ball), 0};
         if (model_.bounds[object].unbounded || part.ball.empty() || !projection_.sees(part.ball)) return 0;

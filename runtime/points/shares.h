@@ -8,7 +8,7 @@
 
 namespace graftal {
 
-/// What each instance of the root shows in a picture: of its parts that are in the picture, the areas, over
+/// The sizes of the root's instances in a picture: of their parts that are in the picture, the areas, over
 /// the squares of their distances from the eye. Hills on the horizon have the area of many trees, and show
 /// less. Empty if chances are stated there, or it is part of a recursion. At most some 100,000 parts are
 /// looked at, the others by the wholes that they lie in.

@@ -17,7 +17,7 @@ namespace graftal {
 /// the distribution. A power of two.
 inline constexpr std::uint32_t draw_sets = 64;
 
-/// What a rule's random numbers follow from.
+/// The draw that a rule's random numbers follow from.
 struct RuleDraw {
     std::uint32_t set = 0; ///< of the draw_sets, or, without a pool,
     std::uint64_t own = 0; ///< the module's draw

@@ -144,6 +144,27 @@ const std::string half_spaces = R"(
     ground { height: 0 }
 )";
 
+/// Solids that combine what is left of their operands where levels end.
+const std::string ending_operands = R"(
+    canonical object specks {
+        cube scale: 0.2 translate: 0.5, 0, 0
+        specks scale: 0.5 translate: 0.2, 0.1, 0
+    }
+    object half {
+        intersection: sphere scale: 1.5
+        specks
+        plane rotate: z, 20
+    }
+    object notched {
+        difference: cube scale: 0.8 translate: 3, 0, 0
+        specks translate: 3, 0, 0
+        sphere translate: 3.4, 0.8, 0.8
+    }
+    camera { location: 2, 4, 9 look_at: 1.2, 0, 0 angle: 40 }
+    light { sun: -1, 2, 1.5 color: 0.8, 0.7, 0.6 }
+    ground { height: -1.6 }
+)";
+
 const CameraSetting parallel_from_above{.location = Vec3(2.1, 3.3, 1.7),
                                         .look_at = Vec3(0.0),
                                         .up = Vec3(0.2, 0, -1),
@@ -195,6 +216,7 @@ const Question questions[] = {
     {"AddressAlone", "scenes/hart/sierpinski.inst", zoomed("left.up", "", 1)},
     {"EveryPrimitive", "still_life.inst", plain(), 0.1, still_life},
     {"ShapesOfNumbers", "shapes.inst", plain(), 0.1, shapes},
+    {"OperandsWhereLevelsEnd", "ending_operands.inst", stopped_after(1), 0.03, ending_operands},
     {"HalfSpaces", "half_spaces.inst", plain(), 0.1, half_spaces},
     {"MeshAndShapes", "scenes/shapes/shapes.inst", plain(), 0.1},
     {"SpecksOfACurve", "scenes/ifs/koch_curve.rifs", plain(), 0.01},

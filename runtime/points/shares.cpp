@@ -55,7 +55,7 @@ class Shown {
     /// The share of the part as a whole; or 0, and its own parts are still to be looked at.
     double look_at(Walk<Part, Smaller>& walk, ObjectId object, const Affine& map) {
         Part part{object, map, transformed(map, model_.bounds[object].ball), 0};
-        if (model_.bounds[object].unbounded || part.ball.empty() || !projection_.sees(part.ball)) return 0;
+        if (part.ball.empty() || !projection_.sees(part.ball)) return 0; // planes get no points
         part.looks = look(part.ball);
         const Object& what = graph_.objects[object];
         if (what.primitive || what.packed || model_.components.unending[object] || part.looks <= small_enough)

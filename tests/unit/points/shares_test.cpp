@@ -80,6 +80,14 @@ TEST_F(Shares, of_hills_around_a_tree_are_those_of_the_hills_behind_it) {
     EXPECT_THAT(said_, HasSubstr("warning: 'ball' gets 0.00013 % of the points"));
 }
 
+TEST_F(Shares, of_a_part_with_a_plane_are_those_of_the_rest) {
+    const std::vector<double> sizes =
+        shown(camera + "canonical object floor { plane translate: 0, -2, 0\n ball translate: 0, 0, -90 }\n"
+                       "object all { ball\n floor }");
+    ASSERT_EQ(sizes.size(), 2u);
+    EXPECT_NEAR(sizes[0] / sizes[1], 100, 1e-6);
+}
+
 TEST_F(Shares, are_none_where_chances_are_stated) {
     EXPECT_TRUE(
         shown(camera + "object all { ball chance: 1\n ball translate: 0, 0, -90 chance: 2 }").empty());

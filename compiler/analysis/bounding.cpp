@@ -50,6 +50,27 @@ class Effort {
     std::uint64_t queries_left_;
 };
 
+/// The box about what a half space leaves of a box; empty if that is nothing.
+Box clipped(const Box& box, const HalfSpace& half_space) {
+    const std::array<Vec3, 8> corners = box.corners();
+    std::array<double, 8> above{};
+    // Faces that lie in the plane stay within.
+    const double slack =
+        4e-12 * glm::length(box.size()) + 4e-15 * std::max(glm::length(box.min), glm::length(box.max));
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        above[i] = glm::dot(half_space.up, corners[i]) - half_space.height - slack;
+    Box left;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        if (!(above[i] > 0)) left.include(corners[i]);
+        for (const std::size_t side : {1, 2, 4}) {
+            const std::size_t j = i ^ side; // the other end of an edge
+            if (above[i] < 0 && above[j] > 0)
+                left.include(corners[i] + above[i] / (above[i] - above[j]) * (corners[j] - corners[i]));
+        }
+    }
+    return {glm::max(left.min, box.min), glm::min(left.max, box.max)};
+}
+
 /// The faces that will be looked for, with `weight` of each object.
 template<typename Weight>
 std::uint64_t queries(const Graph& graph, const Components& components, const Weight& weight) {
@@ -149,7 +170,8 @@ class Bounder {
         }
     }
 
-    /// Bounds by the boxes of the operands that have some. Boxes apart leave a point of nothing between them.
+    /// Bounds by the boxes of the operands that have some, and by half spaces that leave something of them.
+    /// Boxes apart leave a point of nothing between them.
     void bound_intersection(ObjectId id) {
         Outer& outer = outers_[id];
         std::optional<Box> common;
@@ -166,6 +188,9 @@ class Bounder {
             if (common->min[i] > common->max[i])
                 common->min[i] = common->max[i] = 0.5 * common->min[i] + 0.5 * common->max[i];
         keep_in_range(*common);
+        for (const Instance& instance : graph_.objects[id].instances)
+            if (const std::optional<HalfSpace> half_space = half_space_of(graph_, instance))
+                if (const Box left = clipped(*common, *half_space); !left.empty()) common = left;
         outer.box = *common;
         outer.set_ball(circumball(outer.box));
         outer.empty = false;

@@ -150,10 +150,13 @@ class Counter {
             any = true;
             if (!budget_.add(fixed.every_level, ending_[part.master], part.times)) return false;
         }
+        // Nothing is left of a difference without its first part: a proxy stands for it.
+        const bool is_proxy = object.combination == Combination::subtract &&
+                              components_.unending[object.instances.front().master];
         if (object.terminal)
             fixed.where_cut = ending_[object.terminal->master];
         else
-            fixed.where_cut = any ? fixed.every_level : Number(1);
+            fixed.where_cut = any && !is_proxy ? fixed.every_level : Number(1);
         held_bits_ += bits(fixed.every_level) + bits(fixed.where_cut);
         return true;
     }

@@ -130,7 +130,17 @@ class ChanceFinder {
             chances_.emplace_back(object.instances.size(), 0.0);
     }
 
-    Chances find() && {
+    Chances chances() && {
+        find();
+        return std::move(chances_);
+    }
+    std::vector<double> sizes() && {
+        find();
+        return std::move(mass_);
+    }
+
+  private:
+    void find() {
         const std::vector<std::uint32_t> places = places_in_components(components_);
         for (std::uint32_t c = 0; c < components_.members.size(); ++c) {
             if (components_.cyclic[c])
@@ -138,28 +148,17 @@ class ChanceFinder {
             else
                 find_single(components_.members[c].front());
         }
-        return std::move(chances_);
     }
 
-  private:
     bool stated(ObjectId id) const {
         const std::vector<Instance>& instances = graph_.objects[id].instances;
         return std::any_of(instances.begin(), instances.end(),
                            [](const Instance& instance) { return instance.chance > 0; });
     }
 
-    /// Size of the part that an instance places, in units of area. Requires that its master is done.
+    /// Requires that the master is done.
     double size_of(const Instance& instance) const {
-        const Object& master = graph_.objects[instance.master];
-        if (!master.primitive) {
-            double size = area_factor(instance.parent_from_child.linear);
-            // A part that is flattened for good has an area all the same.
-            const double stretch = norm(instance.parent_from_child.linear);
-            if (size < flattening * stretch * stretch) size = flattening * stretch * stretch;
-            return size * mass_[instance.master];
-        }
-        if (*master.primitive == PrimitiveKind::plane) return 0;
-        return PlacedSurface(*master.primitive, instance.parent_from_child).area();
+        return placed_size(graph_, instance.master, instance.parent_from_child, mass_);
     }
 
     /// The chances of one object, from what each instance has.
@@ -257,7 +256,20 @@ double area_factor(const Mat3& linear) {
 
 Chances chances_of(const Graph& graph, const Components& components,
                    const std::vector<ObjectBounds>& bounds) {
-    return ChanceFinder(graph, components, bounds).find();
+    return ChanceFinder(graph, components, bounds).chances();
+}
+
+std::vector<double> sizes_of(const Graph& graph, const Components& components,
+                             const std::vector<ObjectBounds>& bounds) {
+    return ChanceFinder(graph, components, bounds).sizes();
+}
+
+double placed_size(const Graph& graph, ObjectId part, const Affine& map, const std::vector<double>& sizes) {
+    const std::optional<Primitive>& primitive = graph.objects[part].primitive;
+    if (primitive) return *primitive == PrimitiveKind::plane ? 0 : PlacedSurface(*primitive, map).area();
+    // A part that is flattened for good has an area all the same.
+    const double stretch = norm(map.linear);
+    return std::max(area_factor(map.linear), flattening * stretch * stretch) * sizes[part];
 }
 
 } // namespace graftal

@@ -30,6 +30,12 @@ using Chances = std::vector<std::vector<double>>;
 /// Requires the bounds of all objects. O(graph), plus a few dozen rounds through each cyclic component.
 Chances chances_of(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds);
 
+/// The sizes of objects, in units of area, by which chances_of() deals points out.
+std::vector<double> sizes_of(const Graph& graph, const Components& components,
+                             const std::vector<ObjectBounds>& bounds);
+/// The size of a part that a map places, from sizes_of().
+double placed_size(const Graph& graph, ObjectId part, const Affine& map, const std::vector<double>& sizes);
+
 /// |det|^(2/3), the area-like size of a map of space; for flat rows of codes |ad - bc|.
 double area_factor(const Mat3& linear);
 

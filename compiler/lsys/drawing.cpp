@@ -32,6 +32,8 @@ constexpr Vec3 up(0, 1, 0);
 constexpr double most_drift = 0.05;
 constexpr std::uint32_t fewest_variants = 16;
 constexpr std::uint32_t most_variants = 4096;
+/// Among so many, each module of a word finds one of its own.
+constexpr std::uint32_t enough_variants = 1u << 31;
 
 /// Most statements that blocks may carry out for each module that a word may have.
 constexpr std::uint64_t instructions_a_module = 2;
@@ -82,6 +84,7 @@ class Drawer {
         palette_ = std::move(*palette);
         if (!options_.steps) return draw_limit(graph, pool);
         steps_ = *options_.steps;
+        if (options_.exact) rewriter_.use_no_pool();
         if (options_.exact || grammar_.needs_word) {
             if (!derive()) return std::nullopt;
         } else {
@@ -198,7 +201,7 @@ class Drawer {
         derivation.segments = part.segments.str();
         derivation.parts = part_count;
         derivation.size_step = roundings_.front().size_step;
-        derivation.variants = variants_;
+        derivation.variants = rewriter_.is_pooled() ? variants_ : 1;
         derivation.drift = drift_;
         derivation.error = part.error.farthest;
         return drawing;
@@ -266,13 +269,16 @@ class Drawer {
     }
 
     bool take_word(std::optional<ModuleString> word) {
+        // Equal modules are drawn differently where chance draws them: all of them, or in one of the sets.
+        const bool by_chance = grammar_.is_random(RuleKind::interpret);
+        const bool all_differ = by_chance && !rewriter_.is_pooled();
         if (word) {
             const std::size_t length = word->size();
             word_.emplace(grammar_, rewriter_.modules(), std::move(*word));
-            in_run_ = can_draw_run() && length >= options_.run_from && little_repeats(word_->size(), length);
+            in_run_ = can_draw_run() && length >= options_.run_from &&
+                      (all_differ || little_repeats(word_->size(), length));
         }
-        // Equal modules are drawn differently where chance draws them.
-        if (grammar_.is_random(RuleKind::interpret)) variants_ = draw_sets;
+        if (by_chance) variants_ = all_differ ? enough_variants : draw_sets;
         return word_.has_value();
     }
 

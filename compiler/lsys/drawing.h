@@ -18,7 +18,9 @@ struct LsysDrawOptions {
     std::optional<unsigned> steps; ///< nothing: infinitely many
     double share = 0;              ///< of the step after these that has passed: ages are larger by so much
     std::uint64_t seed = 0;
-    bool exact = false; ///< derive the word, rather than compose parts; so are contexts anyway
+    /// Derive the word, as contexts are anyway, rather than compose parts; random numbers are drawn for each
+    /// module, rather than from a pool.
+    bool exact = false;
     std::uint64_t max_modules = 50'000'000; ///< of the word
     /// Number of parameters before the scale, of each model that has inner ones.
     std::map<SymbolId, std::size_t> inner;

@@ -398,6 +398,7 @@ class LsysLowering {
         const std::uint64_t seed = seed_of(grammar),
                             most = std::min(most_written, lowering_.options.max_modules);
         LsysRewriter rewriter(grammar, diagnostics_, seed, &lowering_.meter);
+        if (lowering_.options.exact) rewriter.use_no_pool();
         std::optional<ModuleString> word = derived_word(rewriter, *steps, seed, most, diagnostics_);
         if (!word) return;
         const DerivedWord derived{rewriter, std::move(*word), *steps};

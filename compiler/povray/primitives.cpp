@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "compiler/graph/planes.h"
 #include "compiler/povray/costs.h"
 #include "compiler/primitives/polygon_rings.h"
 #include "compiler/primitives/tapered.h"
@@ -100,6 +101,17 @@ bool write_box(SdlWriter& out, const Primitive&, const Affine& a) {
     return true;
 }
 
+/// Without a matrix: POV-Ray 3.7 bounds what a plane cuts by the wrong numbers where a matrix scales the
+/// plane, and loses what lies beyond.
+bool write_plane(SdlWriter& out, const Primitive&, const Affine& a) {
+    const std::optional<HalfSpace> half_space = half_space_under(a);
+    if (!half_space) return false;
+    out << "plane { ";
+    out.vector(half_space->up, digits) << ", ";
+    out.number(half_space->height, digits);
+    return true;
+}
+
 bool write_cylinder(SdlWriter& out, const Primitive&, const Affine& a) {
     const Mat3& m = a.linear;
     if (!keeps_round(m) || !is_large_enough(m)) return false;
@@ -125,7 +137,7 @@ std::string cone_text(const Primitive& primitive) {
     return "cone { 0, 1, y, " + shortest(top_radius(primitive));
 }
 
-bool stays_triangle(const Mat3&) {
+bool any_map(const Mat3&) {
     return true;
 }
 
@@ -188,7 +200,7 @@ constexpr PovrayPrimitive row_of(PrimitiveKind kind) {
         return {[](const Primitive&) -> std::string {
                     return "triangle { <0,1,0>, <-0.86602540378443865,-0.5,0>, <0.86602540378443865,-0.5,0>";
                 },
-                write_triangle, stays_triangle, costs<400>};
+                write_triangle, any_map, costs<400>};
     case PrimitiveKind::sphere:
         return {[](const Primitive&) -> std::string { return "sphere { 0, 1"; },
                 write_sphere,
@@ -204,7 +216,8 @@ constexpr PovrayPrimitive row_of(PrimitiveKind kind) {
                 nullptr,
                 true};
     case PrimitiveKind::plane:
-        return {[](const Primitive&) -> std::string { return "plane { y, 0"; }, nullptr, nullptr, costs<336>};
+        return {[](const Primitive&) -> std::string { return "plane { y, 0"; }, write_plane, any_map,
+                costs<336>};
     case PrimitiveKind::cylinder:
         return {[](const Primitive&) -> std::string { return "cylinder { 0, y, 1"; }, write_cylinder,
                 keeps_round, costs<640>};

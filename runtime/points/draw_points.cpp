@@ -21,6 +21,7 @@
 #include "runtime/points/ply_file.h"
 #include "runtime/points/point_projection.h"
 #include "runtime/points/point_source.h"
+#include "runtime/points/shares.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
 #include "runtime/system/file.h"
@@ -44,13 +45,22 @@ void note_planes(const Graph& graph, Diagnostics& diagnostics) {
             }
 }
 
-std::optional<ChaosGame> game_of(const AnalysedModel& model, std::optional<unsigned> steps,
-                                 Diagnostics& diagnostics) {
+/// `shares`: of the instances of the root, in place of chances by size; none: there are none.
+std::optional<ChaosGame> game_of(const AnalysedModel& model, const std::vector<double>& shares,
+                                 std::optional<unsigned> steps, Diagnostics& diagnostics) {
     if (refuse_combined(model.graph, "a cloud of random points", diagnostics)) return std::nullopt;
     const double rate = model.contraction.verdict == Verdict::proved ? model.contraction.certificate.rate : 0;
+    std::optional<Graph> shared;
+    if (!shares.empty()) {
+        shared = model.graph;
+        std::vector<Instance>& parts = shared->objects[shared->root].instances;
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            parts[i].chance = shares[i];
+    }
+    const Graph& graph = shared ? *shared : model.graph;
     std::optional<ChaosGame> game;
     if (steps && model.components.unending[model.graph.root]) {
-        const auto cut = unrolled(model.graph, model.components, model.bounds, *steps, most_unrolled);
+        const auto cut = unrolled(graph, model.components, model.bounds, *steps, most_unrolled);
         if (cut) {
             const std::vector<ObjectBounds> none(cut->objects.size());
             game = ChaosGame::of(*cut, strong_components(*cut), none, 0);
@@ -60,7 +70,7 @@ std::optional<ChaosGame> game_of(const AnalysedModel& model, std::optional<unsig
                 fmt::format("{} levels look the same as infinitely many: graftal draws the limit", *steps));
         }
     }
-    if (!game) game = ChaosGame::of(model.graph, model.components, model.bounds, rate);
+    if (!game) game = ChaosGame::of(graph, model.components, model.bounds, rate);
     note_planes(model.graph, diagnostics);
     if (!game)
         diagnostics.error(model.graph.objects[model.graph.root].span,
@@ -277,7 +287,13 @@ std::optional<PointsReport> draw_points(PictureSession& session, const PointsOpt
     const std::shared_ptr<const ViewedModel> viewed = session.viewed(compile, compilation);
     if (!viewed) return std::nullopt;
     const Stopwatch watch;
-    const std::optional<ChaosGame> game = game_of(*viewed->model, viewed->steps, compilation.diagnostics);
+    // Clouds and cards have no eye: there points lie evenly in space.
+    const bool has_eye = options.card.empty() && !options.take && !is_cloud_name(options.output);
+    const std::vector<double> shares =
+        has_eye ? shown_sizes(*viewed->model, viewed->view) : std::vector<double>();
+    warn_of_missed_parts(*viewed->model, shares, compilation.diagnostics);
+    const std::optional<ChaosGame> game =
+        game_of(*viewed->model, shares, viewed->steps, compilation.diagnostics);
     compilation.times.push_back({"chances", watch.seconds()});
     if (!game) return std::nullopt;
     PointsReport report;

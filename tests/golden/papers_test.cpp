@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
+#include <sstream>
+#include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "runtime/system/file.h"
@@ -24,7 +28,8 @@ class Papers : public CommandLine {
     }
 };
 
-/// The L-systems of a scene as far as its `main` one, or all of them, the last one with another axiom.
+/// The L-systems of a scene as far as its `main` one, or all of them, the last one with another axiom. They
+/// find the files that the scene finds.
 std::string with_axiom(const std::string& scene, const std::string& axiom) {
     std::string text;
     EXPECT_TRUE(read_text(source_path(scene), text).ok()) << scene;
@@ -32,7 +37,9 @@ std::string with_axiom(const std::string& scene, const std::string& axiom) {
         text.resize(whole);
     const std::size_t line = text.rfind("\n  axiom ");
     text.replace(line, text.find('\n', line + 1) - line, "\n  axiom " + axiom);
-    return std::regex_replace(text, std::regex("\nuse setting [^\n]*"), "");
+    text = std::regex_replace(text, std::regex("\nuse setting [^\n]*"), "");
+    const std::string folder = source_path(scene.substr(0, scene.rfind('/') + 1));
+    return std::regex_replace(text, std::regex("\"([a-z_./]+\\.(png|rifs|inst))\""), "\"" + folder + "$1\"");
 }
 
 TEST_F(Papers, FigureThreeStandsAsItsTurtleDrawsIt) {
@@ -74,6 +81,25 @@ TEST_F(Papers, TuftsOfBambooHaveThreeLeaves) {
     EXPECT_EQ(leaves, (std::set<long>{3, 6, 9}));
 }
 
+TEST_F(Papers, OrgansOfBambooAreFrusta) {
+    // Section 3.2: a node B is two equal frusta that join at their wide ends, C a long one, D and D0 two
+    // unlike ones.
+    struct Organ {
+        const char* axiom;
+        std::vector<std::string> frusta; ///< the ratios of their radii
+    };
+    for (const Organ& organ : {Organ{"B(0,1,0)", {"0.75", "0.75"}}, Organ{"C(1)", {"0.625"}},
+                               Organ{"D(1)", {"0.5", "0.875"}}, Organ{"D0(1)", {"0.5", "0.875"}}}) {
+        write("organ.lsys", with_axiom("scenes/papers/bamboo.lsys", organ.axiom));
+        const std::string printed = graftal("print organ.lsys --steps 0").out;
+        std::vector<std::string> frusta;
+        static const std::regex line("instance: frustum\\(([^)]*)\\)");
+        for (std::sregex_iterator at(printed.begin(), printed.end(), line), end; at != end; ++at)
+            frusta.push_back((*at)[1].str());
+        EXPECT_EQ(frusta, organ.frusta) << organ.axiom << "\n" << printed;
+    }
+}
+
 TEST_F(Papers, StretchesOfTheCulmGrow) {
     write("culm.lsys", with_axiom("scenes/plants/bamboo_culm.lsys", "A(3)"));
     const auto height = [&](int steps) {
@@ -88,6 +114,118 @@ TEST_F(Papers, TreeWithoutChanceIsSymmetric) {
     const Json bounds = stats("tree.inst")["bounds"];
     for (const int axis : {0, 2})
         EXPECT_NEAR(bounds["min"][axis].get<double>(), -bounds["max"][axis].get<double>(), 1e-9);
+}
+
+TEST_F(Papers, BranchesOfAPlantWearTheSquareOfTableOne) {
+    // Han 2007: trunk(x, y, r, k1, k2). A branch 0.2 wide and 0.9 long, at the origin, upright.
+    write("branch.inst", "use trunk = \"" + source_path("scenes/plants/trunk_block.inst") +
+                             "\"\nobject branch { trunk  scale: 0.2, 0.9 }\n");
+    const Json bounds = stats("branch.inst")["bounds"];
+    const double slack = 0.002; // the tile is a little larger than its square
+    EXPECT_NEAR(bounds["min"][0].get<double>(), -0.1, slack);
+    EXPECT_NEAR(bounds["max"][0].get<double>(), 0.1, slack);
+    EXPECT_NEAR(bounds["min"][1].get<double>(), 0, slack);
+    EXPECT_NEAR(bounds["max"][1].get<double>(), 0.9, 2 * slack);
+    // Its four maps halve the square, in the proportions of the table.
+    const std::string printed = graftal("print branch.inst").out;
+    for (const char* const chance : {"0.15", "0.35"})
+        EXPECT_NE(printed.find(fmt::format("chance: {}", chance)), std::string::npos) << printed;
+    // The plant's first stretch: half a unit long, a tenth wide.
+    write("plant.inst", "use plant = \"" + source_path("scenes/plants/leafy_plant.lsys") +
+                            "\"\nobject whole { plant(0, 1) }\n");
+    EXPECT_NE(graftal("print --exact plant.inst").out.find("matrix: 0.1, 0, 0, 0, 0, 0.5, 0, 0,"),
+              std::string::npos);
+}
+
+TEST_F(Papers, LeavesOfTheTreeWithoutChanceMirrorToo) {
+    // A whorl of leaves, and a bough with its twigs: either side of the bough's plane, which is that of x =
+    // 0.
+    for (const char* part : {"K(0.1)", "B(1,0.1)"}) {
+        write("part.lsys", with_axiom("scenes/plants/tree_plain.lsys", part));
+        const Json bounds = stats("part.lsys --steps 3")["bounds"];
+        const double left = bounds["min"][0].get<double>(), right = bounds["max"][0].get<double>();
+        EXPECT_GT(right, 0.05) << part;
+        EXPECT_NEAR(left, -right, 1e-4 * right) << part;
+    }
+}
+
+/// x and y of the image of (0, 1/2) under each map of a used model, in its printed graph.
+std::set<std::pair<std::string, std::string>> images_of_the_middle(const std::string& printed) {
+    static const std::regex line("(instance|union): leaf[^\n]*\n +matrix: ([^\n]*)");
+    std::set<std::pair<std::string, std::string>> images;
+    for (std::sregex_iterator at(printed.begin(), printed.end(), line), end; at != end; ++at) {
+        std::vector<double> row; // a b . e, c d . f
+        std::istringstream numbers(std::regex_replace((*at)[2].str(), std::regex(","), " "));
+        for (double number; numbers >> number;)
+            row.push_back(number);
+        images.emplace(fmt::format("{:.9f}", row.at(3) + row[1] / 2 + 1),
+                       fmt::format("{:.9f}", row.at(7) + row[5] / 2 + 1));
+    }
+    return images;
+}
+
+TEST_F(Papers, LeafFamiliesKeepWhereTheirMapsTakeTheMiddle) {
+    // Fang and Li, section 3.2: e + b/2 and f + d/2 are those of the original parameters.
+    for (const char* const leaf : {"maple_leaf", "arbor_leaf", "bamboo_leaf"}) {
+        std::string before;
+        std::set<std::pair<std::string, std::string>> expected;
+        for (const char* const k : {"0.5", "0", "0.15", "0.8", "1"}) {
+            write("one.inst", fmt::format("use leaf = \"{}\"\nobject one {{ leaf({}{}) }}\n",
+                                          source_path(fmt::format("scenes/plants/{}.rifs", leaf)), k,
+                                          std::string_view(leaf) == "maple_leaf" ? ", 0.6" : ""));
+            const std::string printed = graftal("print one.inst").out;
+            EXPECT_NE(printed, before) << leaf << " " << k;
+            before = printed;
+            if (expected.empty()) expected = images_of_the_middle(printed);
+            EXPECT_EQ(expected.size(), 4u) << leaf;
+            EXPECT_EQ(images_of_the_middle(printed), expected) << leaf << " " << k;
+        }
+    }
+}
+
+TEST_F(Papers, PlanesDivideSpaceAsABinaryTree) {
+    // Each space has a plane with two halves, and each half the space of the next plane.
+    const std::string dot =
+        graftal("graph --set planes=7 '" + source_path("scenes/plants/space_partition.inst") + "'").out;
+    std::map<std::string, std::string> number; // by label
+    static const std::regex node("(n[0-9]+) \\[label=\"([^\"]*)\"");
+    for (std::sregex_iterator at(dot.begin(), dot.end(), node), end; at != end; ++at)
+        number[(*at)[2]] = (*at)[1];
+    const auto leads = [&](const std::string& from, const std::string& to) {
+        EXPECT_TRUE(number.contains(from) && number.contains(to)) << from << " " << to;
+        return dot.find(fmt::format("{} -> {};", number[from], number[to])) != std::string::npos;
+    };
+    for (int i = 1; i <= 7; ++i)
+        for (const auto& [side, next] : {std::pair("left", 2 * i), std::pair("right", 2 * i + 1)}) {
+            const std::string half = fmt::format("{}({})", side, i), rest = fmt::format("subtree({})", next);
+            EXPECT_TRUE(leads(fmt::format("space({})", i), half)) << half;
+            EXPECT_TRUE(leads(half, fmt::format("{}_half", side))) << half;
+            EXPECT_TRUE(leads(half, rest)) << half;
+            if (next <= 7) {
+                EXPECT_TRUE(leads(rest, fmt::format("space({})", next))) << half;
+            }
+        }
+    EXPECT_TRUE(leads("left_half", "plane"));
+    EXPECT_FALSE(number.contains("subtree(16)"));
+}
+
+TEST_F(Papers, BoxesOfHalvesEndAtTheirPlanes) {
+    // A half's box is within its half space, on its plane where the subtree crosses that.
+    for (const auto& [half, sign] : {std::pair("left", -1.0), std::pair("right", 1.0)}) {
+        write("half.inst", fmt::format("use p = \"{}\"\nobject half {{ p.{}(1) }}\n",
+                                       source_path("scenes/plants/space_partition.inst"), half));
+        const Json bounds = stats("half.inst")["bounds"];
+        EXPECT_NEAR(bounds[sign < 0 ? "max" : "min"][0].get<double>(), 0.02 * sign, 1e-9);
+        EXPECT_GT(bounds[sign < 0 ? "min" : "max"][0].get<double>() * sign, 1);
+    }
+    // A plane askew: what it leaves of a cube is a corner.
+    write("corner.inst", "object corner { intersection: cube\n"
+                         "plane rotate: z, -45 translate: -1, -0.5, 0 }\n");
+    const Json bounds = stats("corner.inst")["bounds"];
+    for (const int axis : {0, 1}) {
+        EXPECT_NEAR(bounds["max"][axis].get<double>(), -0.5, 1e-9);
+        EXPECT_NEAR(bounds["min"][axis].get<double>(), -1, 1e-9);
+    }
 }
 
 TEST_F(Papers, LeavesAreMirrorImagesOfThemselves) {

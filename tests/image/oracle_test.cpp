@@ -112,6 +112,59 @@ const std::string shapes = R"(
     ground { height: 0 }
 )";
 
+/// Solids cut by planes that are turned, stretched, mirrored and united, and by what planes have cut.
+const std::string half_spaces = R"(
+    material cut { color: 0.2, 0.3, 0.8 }
+    canonical object wedge {
+        plane rotate: z, 50
+        plane scale: 0.3, 2, 5 rotate: x, -70
+    }
+    canonical object corner {
+        intersection: plane scale: 7 translate: 0, 0.4, 0
+        plane scale: 1, -1, 1 translate: 0, -0.5, 0 material: cut
+        sphere
+    }
+    object things {
+        corner translate: -2.4, 1, 0
+        corner scale: -0.8, 1.1, 0.9 rotate: <1, 2, 3>, 50 translate: 0, 1.2, -0.5 tint: 0.3, 0.8, 0.2, 0.4
+        notched scale: 0.9, 0.9, -0.9 translate: 2.2, 1, 0.4
+        dented translate: 0.2, 0.9, 2
+    }
+    canonical object notched {
+        difference: cube scale: 0.9
+        wedge scale: 40 translate: -0.3, -0.2, 0.2 material: cut
+    }
+    canonical object dented {
+        difference: superellipsoid(0.3, 0.3) scale: 0.7
+        corner scale: 0.6 translate: 0.3, 0.5, 0.4 material: cut
+    }
+    camera { location: 2, 4, 9 look_at: 0.2, 1, 0 angle: 40 }
+    light { sun: -1, 2, 1.5 color: 0.8, 0.7, 0.6 }
+    light { location: 3, 5, 4 color: 0.3, 0.4, 0.6 }
+    ground { height: 0 }
+)";
+
+/// Solids that combine what is left of their operands where levels end.
+const std::string ending_operands = R"(
+    canonical object specks {
+        cube scale: 0.2 translate: 0.5, 0, 0
+        specks scale: 0.5 translate: 0.2, 0.1, 0
+    }
+    object half {
+        intersection: sphere scale: 1.5
+        specks
+        plane rotate: z, 20
+    }
+    object notched {
+        difference: cube scale: 0.8 translate: 3, 0, 0
+        specks translate: 3, 0, 0
+        sphere translate: 3.4, 0.8, 0.8
+    }
+    camera { location: 2, 4, 9 look_at: 1.2, 0, 0 angle: 40 }
+    light { sun: -1, 2, 1.5 color: 0.8, 0.7, 0.6 }
+    ground { height: -1.6 }
+)";
+
 const CameraSetting parallel_from_above{.location = Vec3(2.1, 3.3, 1.7),
                                         .look_at = Vec3(0.0),
                                         .up = Vec3(0.2, 0, -1),
@@ -163,6 +216,8 @@ const Question questions[] = {
     {"AddressAlone", "scenes/hart/sierpinski.inst", zoomed("left.up", "", 1)},
     {"EveryPrimitive", "still_life.inst", plain(), 0.1, still_life},
     {"ShapesOfNumbers", "shapes.inst", plain(), 0.1, shapes},
+    {"OperandsWhereLevelsEnd", "ending_operands.inst", stopped_after(1), 0.03, ending_operands},
+    {"HalfSpaces", "half_spaces.inst", plain(), 0.1, half_spaces},
     {"MeshAndShapes", "scenes/shapes/shapes.inst", plain(), 0.1},
     {"SpecksOfACurve", "scenes/ifs/koch_curve.rifs", plain(), 0.01},
     {"TrianglesAPixelWide", "scenes/hart/sierpinski.inst", plain()},

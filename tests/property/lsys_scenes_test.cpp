@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/languages/lower.h"
+#include "runtime/system/disk_files.h"
 #include "tests/unit/lsys/turtle.h"
 
 namespace graftal {
@@ -44,7 +45,7 @@ std::optional<Lowered> lower(const std::string& path, unsigned steps, bool exact
     options.run_from = run_from;
     SourceMap sources;
     Diagnostics diagnostics;
-    auto [graph, notes] = lower_text(path, text, options, sources, diagnostics);
+    auto [graph, notes] = lower_text(path, text, options, sources, diagnostics, {.files = &disk_files()});
     if (!graph) {
         // Some draw nothing in their first steps.
         EXPECT_NE(diagnostics.render(sources).find("draws nothing"), std::string::npos)

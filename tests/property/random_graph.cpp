@@ -13,6 +13,7 @@
 
 #include "compiler/graph/components.h"
 #include "compiler/graph/run.h"
+#include "compiler/graph/verify.h"
 #include "tests/unit/primitives/all_primitives.h"
 
 namespace graftal::testing {
@@ -35,6 +36,7 @@ class Generator {
         for (std::uint32_t i = 0; i < union_count; ++i)
             fill(i);
         add_terminals();
+        if (options_.combined) combine();
         if (options_.settings) add_settings();
         if (options_.duplicates && !choices_.one_in(4)) plant_duplicates(graph_, choices_);
         return std::move(graph_);
@@ -155,7 +157,11 @@ class Generator {
     }
 
     Primitive primitive() {
-        static const std::vector<Primitive> all = test::all_primitives();
+        static const std::vector<Primitive> every = test::all_primitives();
+        static const std::vector<Primitive> solids = {PrimitiveKind::sphere,   PrimitiveKind::cube,
+                                                      PrimitiveKind::cylinder, tapered(0.5),
+                                                      PrimitiveKind::torus,    PrimitiveKind::plane};
+        const std::vector<Primitive>& all = options_.combined ? solids : every;
         const Primitive& chosen = all[choices_.below(static_cast<std::uint32_t>(all.size()))];
         const bool allowed = !(chosen == PrimitiveKind::plane) || !options_.cycles; // no plane within a cycle
         return allowed ? chosen : PrimitiveKind::sphere;
@@ -238,6 +244,16 @@ class Generator {
         }
     }
 
+    /// Combines the instances of some unions, as far as the graph stays one that verify() accepts.
+    void combine() {
+        for (const ObjectId id : unions_) {
+            Object& object = graph_.objects[id];
+            if (object.packed || object.instances.size() < 2 || choices_.one_in(3)) continue;
+            object.combination = choices_.one_in(2) ? Combination::intersect : Combination::subtract;
+            if (!verify(graph_).empty()) object.combination = Combination::unite;
+        }
+    }
+
     void add_settings() {
         SceneSettings& settings = graph_.settings;
         if (choices_.one_in(3)) settings.camera = camera();
@@ -302,8 +318,10 @@ void plant_duplicates(Graph& graph, Choices& choices) {
         if (graph.objects[id].primitive) continue;
         Object copy = graph.objects[id];
         copy.name = "copy" + std::to_string(id);
-        for (std::size_t i = copy.instances.size(); i > 1; --i)
-            std::swap(copy.instances[i - 1], copy.instances[choices.below(static_cast<std::uint32_t>(i))]);
+        // The first part of a difference stays the first.
+        const auto first = static_cast<std::uint32_t>(copy.combination == Combination::subtract);
+        for (auto i = static_cast<std::uint32_t>(copy.instances.size()); i > first + 1; --i)
+            std::swap(copy.instances[i - 1], copy.instances[first + choices.below(i - first)]);
         copy_of[id] = graph.add(std::move(copy));
     }
     const auto redirect = [&](Instance& instance) {

@@ -36,6 +36,7 @@ struct RandomGraphOptions {
     /// exact.
     bool exact = false;
     bool mirrored = false; ///< some unions are their own mirror images
+    bool combined = false; ///< of solids; some objects are intersections and differences
     double huge = 1e200;   ///< the largest number in a transform; models have none beyond 1e100
 };
 

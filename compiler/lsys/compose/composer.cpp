@@ -145,7 +145,7 @@ bool LsysComposer::choose(RuleKind kind, ModuleId module, Stage stage, std::uint
     const Winner<Alternative> chosen = variants_.choose(*alternatives, variant, chance_module(module),
                                                         chance_stage(stage, kind == RuleKind::interpret));
     result.by = chosen.entrant;
-    result.set = chosen.even_set();
+    result.draw = chosen.even();
     result.kind = kind;
     result.moment = moment;
     result.random = alternatives->size() > 1 || chosen.entrant->rule->draws > 0;
@@ -344,7 +344,7 @@ bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& s
     if (unfolded.aged) task.turtle.read_birth();
     if (unfolded.by->rule->draws == 0) return true;
     const ModuleString* const drawn =
-        rewriter_.successor(*unfolded.by, module, unfolded.moment, unfolded.set);
+        rewriter_.successor(*unfolded.by, module, unfolded.moment, unfolded.draw);
     if (!drawn) return false;
     task.drawn = *drawn;
     task.string = task.drawn;

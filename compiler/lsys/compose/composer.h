@@ -96,7 +96,7 @@ class LsysComposer {
     /// The alternative that is drawn in place of a module.
     struct Unfolded {
         const Alternative* by = nullptr; ///< null: drawn as it is
-        std::uint32_t set = 0;           ///< of the random numbers for the alternative
+        RuleDraw draw;                   ///< the alternative's random numbers
         RuleKind kind = RuleKind::produce;
         Moment moment;       ///< of the production
         Stage stage = 0;     ///< of the successor

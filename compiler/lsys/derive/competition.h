@@ -17,6 +17,12 @@ namespace graftal {
 /// the distribution. A power of two.
 inline constexpr std::uint32_t draw_sets = 64;
 
+/// The draw that a rule's random numbers follow from.
+struct RuleDraw {
+    std::uint32_t set = 0; ///< of the draw_sets, or, without a pool,
+    std::uint64_t own = 0; ///< the module's draw
+};
+
 /// A rule that fits a module. The draws that choose it are those after its predecessor's last one, up to its
 /// own last one.
 struct Competitor {
@@ -49,14 +55,14 @@ template<typename Entrant> struct Winner {
     std::uint64_t inside = 0; ///< the draw, counted from where the winner's draws begin
     std::uint64_t width = 0;  ///< number of the winner's draws
 
-    /// The set of random numbers for a draw of chance: it has nothing to do with the choice.
-    std::uint32_t scattered_set() const {
-        return static_cast<std::uint32_t>(CounterRandom::scrambled(inside) % draw_sets);
+    /// The random numbers for a draw of chance: the set has nothing to do with the choice.
+    RuleDraw scattered() const {
+        return {static_cast<std::uint32_t>(CounterRandom::scrambled(inside) % draw_sets), inside};
     }
-    /// The set of random numbers for one of evenly spread draws: the sets are spread evenly, too.
-    std::uint32_t even_set() const {
+    /// The random numbers for one of evenly spread draws: the sets are spread evenly, too.
+    RuleDraw even() const {
         const double share = static_cast<double>(inside) / std::max(1.0, static_cast<double>(width));
-        return std::min(draw_sets - 1, static_cast<std::uint32_t>(share * draw_sets));
+        return {std::min(draw_sets - 1, static_cast<std::uint32_t>(share * draw_sets)), inside};
     }
 };
 

@@ -45,7 +45,7 @@ bool LsysDecomposer::run(ModuleId module, const CounterRandom& random, ModuleStr
             return refuse(module, "does not end");
         const Winner<Alternative> chosen = choose(alternatives->data(), random(draws++));
         const ModuleString* const successor =
-            rewriter_.successor(*chosen.entrant, next, moment(next), chosen.even_set());
+            rewriter_.successor(*chosen.entrant, next, moment(next), chosen.even());
         if (!successor) return false;
         if (out.size() + pending_.size() + successor->size() > max_modules_)
             return refuse(module, "is too long");

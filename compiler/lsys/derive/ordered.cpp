@@ -91,8 +91,9 @@ std::optional<const LsysRule*> LsysOrderedRewriter::choose_rule(RuleKind kind, M
     const LsysRule& rule = *chosen.rule;
     slots_.resize(chosen.slots + rule.slot_count());
     slots_.erase(slots_.begin(), slots_.begin() + static_cast<std::ptrdiff_t>(chosen.slots));
-    const auto set = static_cast<std::uint32_t>(rule.draws > 0 ? chance_->draw() % draw_sets : 0);
-    if (!rewriter_.apply_slots(rule, moment, set, slots_)) return std::nullopt;
+    const std::uint64_t own = rule.draws > 0 ? chance_->draw() : 0;
+    const RuleDraw numbers{static_cast<std::uint32_t>(own % draw_sets), own};
+    if (!rewriter_.apply_slots(rule, moment, numbers, slots_)) return std::nullopt;
     return &rule;
 }
 

@@ -111,10 +111,10 @@ std::vector<double> LsysRewriter::parameters(ModuleId module) const {
 }
 
 const ModuleString* LsysRewriter::successor(const Alternative& alternative, ModuleId module,
-                                            const Moment& moment, std::uint32_t set) {
+                                            const Moment& moment, RuleDraw draw) {
     if (alternative.rule->draws == 0) return &alternative.successor;
     drawn_.clear();
-    if (append_successor(*alternative.rule, parameters(module), moment, set, drawn_)) return &drawn_;
+    if (append_successor(*alternative.rule, parameters(module), moment, draw, drawn_)) return &drawn_;
     failed_ = true;
     return nullptr;
 }
@@ -156,7 +156,7 @@ Fit LsysRewriter::apply(Alternative& alternative, std::span<const double> values
     if (!slots) return Fit::error;
     const Fit fit = enter(alternative, moment, *slots);
     if (fit != Fit::yes || rule.draws > 0) return fit;
-    const bool applied = rule.is_plain() || apply_slots(rule, moment, 0, slots_);
+    const bool applied = rule.is_plain() || apply_slots(rule, moment, {}, slots_);
     return applied && append_by(rule, moment, *slots, alternative.successor) ? Fit::yes : Fit::error;
 }
 
@@ -178,13 +178,22 @@ bool LsysRewriter::try_slots(const LsysRule& rule, const Moment& moment, std::ve
            machine_.run(rule.before, state_of(rule, moment, std::span(slots).subspan(first)));
 }
 
-bool LsysRewriter::apply_slots(const LsysRule& rule, const Moment& moment, std::uint32_t set,
-                               std::vector<double>& slots, std::size_t first) {
-    if (rule.draws > 0) {
+void LsysRewriter::fill_draws(const LsysRule& rule, RuleDraw draw, std::span<double> numbers) {
+    if (pooled_) {
         const std::vector<double>& draws = draws_of(rule);
         for (std::uint32_t call = 0; call < rule.draws; ++call)
-            slots[first + rule.slots.size() + call] = draws[call * draw_sets + set];
+            numbers[call] = draws[call * draw_sets + draw.set];
+        return;
     }
+    const auto id = static_cast<std::size_t>(&rule - grammar_.rules.data());
+    const CounterRandom random = CounterRandom(seed_).sequence(id).sequence(draw.own);
+    for (std::uint32_t call = 0; call < rule.draws; ++call)
+        numbers[call] = CounterRandom::unit(random(call));
+}
+
+bool LsysRewriter::apply_slots(const LsysRule& rule, const Moment& moment, RuleDraw draw,
+                               std::vector<double>& slots, std::size_t first) {
+    if (rule.draws > 0) fill_draws(rule, draw, std::span(slots).subspan(first + rule.slots.size()));
     return rule.after.empty() ||
            machine_.run(rule.after, state_of(rule, moment, std::span(slots).subspan(first)));
 }
@@ -224,10 +233,10 @@ Fit LsysRewriter::enter_values(Competitor& competitor, std::span<const double> v
 }
 
 bool LsysRewriter::append_successor(const LsysRule& rule, std::span<const double> values,
-                                    const Moment& moment, std::uint32_t set, ModuleString& string) {
+                                    const Moment& moment, RuleDraw draw, ModuleString& string) {
     if (rule.is_plain()) return append_by(rule, moment, values, string);
     const auto slots = slots_of(rule, values, moment);
-    return slots && apply_slots(rule, moment, set, slots_) && append_by(rule, moment, slots_, string);
+    return slots && apply_slots(rule, moment, draw, slots_) && append_by(rule, moment, slots_, string);
 }
 
 bool LsysRewriter::append_by(const LsysRule& rule, const Moment& moment, std::span<const double> slots,

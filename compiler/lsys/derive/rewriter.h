@@ -83,6 +83,10 @@ class LsysRewriter {
     /// productions may change the variables.
     void derive_in_order(LsysChance* chance) { chance_ = chance; }
 
+    /// From now on each module has random numbers of its own, rather than one of the draw_sets.
+    void use_no_pool() { pooled_ = false; }
+    bool is_pooled() const { return pooled_; }
+
     /// The modules of the axiom; nothing after an error.
     std::optional<ModuleString> axiom();
 
@@ -94,10 +98,10 @@ class LsysRewriter {
     /// Whether alternatives() would give any, or an error.
     bool is_rewritten(RuleKind kind, ModuleId module, const Moment& moment);
 
-    /// The successor of an alternative of a module; its random numbers are those of one of the draw_sets.
-    /// Valid until the next call; null after an error.
+    /// The successor of an alternative of a module, with the random numbers of a draw. Valid until the next
+    /// call; null after an error.
     const ModuleString* successor(const Alternative& alternative, ModuleId module, const Moment& moment,
-                                  std::uint32_t set);
+                                  RuleDraw draw);
 
     /// From now on modules of `ages` symbols are told apart by the step in which they came into being; but
     /// not what they are drawn as. `no_birth`: no longer.
@@ -105,11 +109,11 @@ class LsysRewriter {
 
     /// The steps of applying a rule, for callers that keep its slots. `slots` has the values of its
     /// variables, from `first` on and last, and gets what else the rule's condition knows. Once applied, it
-    /// gets one of the draw_sets, and the assignments of the second block. False after an error.
+    /// gets the random numbers of a draw, and the assignments of the second block. False after an error.
     bool try_slots(const LsysRule& rule, const Moment& moment, std::vector<double>& slots,
                    std::size_t first = 0);
-    bool apply_slots(const LsysRule& rule, const Moment& moment, std::uint32_t set,
-                     std::vector<double>& slots, std::size_t first = 0);
+    bool apply_slots(const LsysRule& rule, const Moment& moment, RuleDraw draw, std::vector<double>& slots,
+                     std::size_t first = 0);
     /// Tries the condition of a rule whose slots are ready. If it holds, sets the competitor's probability.
     Fit enter(Competitor& competitor, const Moment& moment, std::span<const double> slots);
     /// Tries the condition for the values of the rule's variables, those of contexts included.
@@ -122,9 +126,9 @@ class LsysRewriter {
         return grammar_.first_cells.empty() ? std::span<const double>() : known_cells(kind, step);
     }
 
-    /// Adds the rule's successor to `string`, drawn by one of the draw_sets; false after an error.
+    /// Adds the rule's successor to `string`, with the random numbers of a draw; false after an error.
     bool append_successor(const LsysRule& rule, std::span<const double> values, const Moment& moment,
-                          std::uint32_t set, ModuleString& string);
+                          RuleDraw draw, ModuleString& string);
     /// Tries the alternative's rule and, if it fits, says what it gives. Leaves random numbers to
     /// successor().
     Fit apply(Alternative& alternative, std::span<const double> values, const Moment& moment);
@@ -137,7 +141,7 @@ class LsysRewriter {
     bool compete(RuleKind kind, SymbolId symbol, std::size_t arity, std::vector<Entrant>& entrants,
                  const Enter& enter);
 
-    /// The random numbers of a rule: for each call one of each set, call by call.
+    /// The pool of a rule: for each call the number of each set, call by call.
     const std::vector<double>& draws_of(const LsysRule& rule);
 
     /// The value of an expression of a rule, or of the axiom if that is null; nothing after an error.
@@ -166,6 +170,7 @@ class LsysRewriter {
         std::uint32_t found;
     };
 
+    void fill_draws(const LsysRule& rule, RuleDraw draw, std::span<double> numbers);
     std::uint32_t find(RuleKind kind, ModuleId module, const Moment& moment);
     std::uint32_t find_timed(RuleKind kind, ModuleId module, Moment moment, TimeMask reads);
     std::uint32_t compute(RuleKind kind, ModuleId module, const Moment& moment);
@@ -188,6 +193,7 @@ class LsysRewriter {
     LsysVariables variables_;
     LsysChance* chance_ = nullptr;
     bool has_ages_;
+    bool pooled_ = true;
     std::uint32_t birth_ = ModuleTable::no_birth;
     ModuleTable modules_;
     std::array<std::vector<std::uint32_t>, rule_kind_count> known_; ///< by module, into alternatives_

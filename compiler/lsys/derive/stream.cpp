@@ -146,7 +146,7 @@ bool LsysStream::push(const Chosen& chosen, const Module& module, const Moment& 
     frame.slots = static_cast<std::uint32_t>(values_.size() - module.arity);
     frame.cells = rewriter_.cells(rule.kind, moment.step);
     if (!rule.is_plain() && !(rewriter_.try_slots(rule, moment, values_, frame.slots) &&
-                              rewriter_.apply_slots(rule, moment, chosen.set, values_, frame.slots)))
+                              rewriter_.apply_slots(rule, moment, chosen.draw, values_, frame.slots)))
         return false;
     frame.slot_count = static_cast<std::uint32_t>(values_.size() - frame.slots);
     frames_.push_back(frame);
@@ -165,7 +165,7 @@ bool LsysStream::choose_rule(RuleKind kind, const Module& module, const Moment& 
     if (competitors_.empty()) return true;
     const Winner<Competitor> winner = choose(competitors_.data(), draw);
     chosen.rule = winner.entrant->rule;
-    if (chosen.rule->draws > 0) chosen.set = winner.scattered_set();
+    if (chosen.rule->draws > 0) chosen.draw = winner.scattered();
     return true;
 }
 

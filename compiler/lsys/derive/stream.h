@@ -69,10 +69,10 @@ class LsysStream {
         std::uint32_t birth = 0;
         Span span;
     };
-    /// A rule and the set of random numbers for it.
+    /// A rule and the random numbers for it.
     struct Chosen {
         const LsysRule* rule = nullptr; ///< null: none fits
-        std::uint32_t set = 0;
+        RuleDraw draw;
     };
 
     bool run();

@@ -104,16 +104,20 @@ std::optional<RunId> LsysSuccessors::run_of(const Winner<Outcome>& winner) {
     const Outcome& outcome = *winner.entrant;
     const LsysRule& rule = *outcome.rule;
     if (rule.draws == 0) return outcome.run;
-    const std::uint32_t set = winner.scattered_set();
-    forget_if_many(drawn_);
+    const RuleDraw draw = winner.scattered();
     const std::span<const ModuleId> bound = std::span(bounds_).subspan(outcome.bound, outcome.bound_count);
-    RunId& known = drawn_.find_or_add(id_of(rule) * draw_sets + set, bound, unknown_run);
+    const auto drawn = [&]() -> std::optional<RunId> {
+        values_of(bound);
+        ModuleString successor;
+        if (!rewriter_.append_successor(rule, values_, moment(bound.front()), draw, successor))
+            return std::nullopt;
+        return add_successor(successor, rule);
+    };
+    if (!rewriter_.is_pooled()) return drawn();
+    forget_if_many(drawn_);
+    RunId& known = drawn_.find_or_add(id_of(rule) * draw_sets + draw.set, bound, unknown_run);
     if (known != unknown_run) return known;
-    values_of(bound);
-    ModuleString successor;
-    if (!rewriter_.append_successor(rule, values_, moment(bound.front()), set, successor))
-        return std::nullopt;
-    const std::optional<RunId> run = add_successor(successor, rule);
+    const std::optional<RunId> run = drawn();
     if (run) known = *run;
     return run;
 }

@@ -91,8 +91,7 @@ bool LsysWalk::meet(ModuleId module, std::uint32_t birth, bool in_word) {
         *alternatives, [](const Alternative& alternative) { return alternative.rule->is_random(); });
     const std::uint64_t draw = by_chance ? random_.sequence(step_)(chosen_++) : 0;
     const Winner<Alternative> chosen = choose(alternatives->data(), draw);
-    const ModuleString* const successor =
-        rewriter_.successor(*chosen.entrant, module, moment, chosen.even_set());
+    const ModuleString* const successor = rewriter_.successor(*chosen.entrant, module, moment, chosen.even());
     if (successor) levels_.push_back({*successor});
     return successor != nullptr;
 }

@@ -2,40 +2,15 @@
 
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "compiler/graph/planes.h"
 #include "compiler/session/stage_clock.h"
 #include "compiler/session/stages.h"
 
 namespace graftal {
 
-namespace {
-
-/// True, after an error, if an operand holds a half space: POV-Ray's pictures of those differ from ours.
-bool refuse_half_spaces(const AnalysedModel& model, Diagnostics& diagnostics) {
-    const std::vector<bool> holds_plane = plane_holders(model.graph, model.components);
-    for (const Object& object : model.graph.objects) {
-        if (!object.is_combined()) continue;
-        for (const Instance& instance : object.instances) {
-            if (!holds_plane[instance.master]) continue;
-            diagnostics
-                .error(instance.span,
-                       fmt::format("'{}' is cut by a plane, which graftal does not write for POV-Ray",
-                                   object.name))
-                .with_hint("use '--engine native', or a large cube in place of the plane");
-            return true;
-        }
-    }
-    return false;
-}
-
-} // namespace
-
 std::shared_ptr<const CompiledModel> compile_scene(Session& session, const StageOptions& options,
                                                    Compilation& compilation, const CutOptions& cut_options) {
     const std::shared_ptr<const ViewedModel> viewed = session.viewed(options, compilation);
-    if (!viewed || refuse_half_spaces(*viewed->model, compilation.diagnostics)) return nullptr;
+    if (!viewed) return nullptr;
     const auto cut = [&]() -> std::optional<Cut> {
         const std::shared_ptr<const PreparedCut> prepared = session.prepared(options, compilation);
         if (!prepared) return std::nullopt;

@@ -327,7 +327,9 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
     GRAFTAL_INLINE bool enter_node(const TraceEdge& edge, const TraceNode& node, const Frame& parent,
                                    Frame& frame, Entry& entry) {
         if (!go_to_child(edge, node, entry.entry, parent, frame)) return false;
-        if (frame.cut && node.stop_tree == no_tree) {
+        // Operands need no tree.
+        const bool has_operands = node.kind == TraceNode::Kind::combined && node.stop_edge_count > 0;
+        if (frame.cut && node.stop_tree == no_tree && !has_operands) {
             if ((frame.faint || node.faint) && !self.searches_solids())
                 meet_faint_proxy(node, frame);
             else

@@ -45,7 +45,7 @@ TEST(LsysChance, thePoolHasTheDistribution) {
     Sample normal, uniform, other;
     double product = 0;
     for (std::uint32_t set = 0; set < draw_sets; ++set) {
-        const ModuleString* string = model.rewriter().successor(alternative, a, {}, set);
+        const ModuleString* string = model.rewriter().successor(alternative, a, {}, {.set = set});
         const auto parameters = model.rewriter().modules().parameters(string->front());
         normal.add(parameters[0]);
         uniform.add(parameters[1]);
@@ -71,6 +71,20 @@ Sample leaves(const std::string& statements, unsigned steps, const LowerOptions&
     return sample;
 }
 
+/// Kolmogorov's distance of a sample from the normal distribution that is cut at three deviations.
+double farthest_from_cut_normal(const std::set<double>& sample, double mean, double deviation) {
+    const auto below = [&](double x) { return 0.5 * std::erfc((mean - x) / (deviation * std::sqrt(2.0))); };
+    const double first = below(mean - 3 * deviation), within = 1 - 2 * first;
+    double farthest = 0, rank = 0;
+    for (const double x : sample) {
+        const double expected = (below(x) - first) / within, size = static_cast<double>(sample.size());
+        farthest =
+            std::max({farthest, std::abs(expected - rank / size), std::abs(expected - (rank + 1) / size)});
+        ++rank;
+    }
+    return farthest;
+}
+
 TEST(LsysChance, everyWayOfCompilingDealsItOut) {
     const char* const texts[] = {
         "axiom A\nA -> f[+L]A\ninterpret L -> F(normal(2, 0.3))",
@@ -90,6 +104,13 @@ TEST(LsysChance, everyWayOfCompilingDealsItOut) {
                     << text << exact;
                 const std::set<double> different(sample.values.begin(), sample.values.end());
                 EXPECT_GT(different.size(), 50u) << text << exact;
+                if (!exact) continue;
+                EXPECT_EQ(different.size(), sample.values.size()) << text;
+                EXPECT_GT(*different.begin(), 2 - 3 * 0.3) << text;
+                EXPECT_LT(*different.begin(), 2 - 2.2 * 0.3) << text;
+                EXPECT_LT(*different.rbegin(), 2 + 3 * 0.3) << text;
+                EXPECT_GT(*different.rbegin(), 2 + 2.2 * 0.3) << text;
+                EXPECT_LT(farthest_from_cut_normal(different, 2, 0.3), 1.63 / std::sqrt(1000.0)) << text;
             }
 }
 

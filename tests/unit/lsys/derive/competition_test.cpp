@@ -46,9 +46,9 @@ TEST(LsysCompetition, evenDrawsGiveEvenSets) {
     const std::vector<Competitor> competitors = competition({0.5, 0.5});
     std::vector<int> seen(draw_sets);
     for (std::uint32_t i = 0; i < draw_sets; ++i)
-        ++seen[choose(competitors.data(), draw_at((i + 0.5) / (2.0 * draw_sets))).even_set()];
+        ++seen[choose(competitors.data(), draw_at((i + 0.5) / (2.0 * draw_sets))).even().set];
     EXPECT_EQ(seen, std::vector<int>(draw_sets, 1));
-    EXPECT_EQ(choose(competitors.data(), half).even_set(), draw_sets - 1);
+    EXPECT_EQ(choose(competitors.data(), half).even().set, draw_sets - 1);
 }
 
 } // namespace

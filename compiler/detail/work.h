@@ -18,9 +18,9 @@ struct WorkRates {
     static constexpr double baked_triangles = 4e6;  ///< triangles of such meshes
     static constexpr double kinds = 4.5e6;          ///< edges of kinds followed to weigh them (Weights)
     static constexpr double trace_edges = 2e5; ///< edges of a prepared graph made ready for rays (TraceModel)
-    static constexpr double parts_gone_by = 1e7; ///< by the rays of SelfShadows
+    static constexpr double parts_gone_by = 1e7;   ///< by the rays of SelfShadows
     static constexpr double denoised_pixels = 7e5; ///< pixels of a picture whose noise is taken out
-    static constexpr double pieces = 3e6;        ///< pieces looked at to choose among them (choose_cut())
+    static constexpr double pieces = 3e6;          ///< pieces looked at to choose among them (choose_cut())
 };
 
 /// Slowness of steps through a graph, as a factor: a small one is in the processor's caches, a large one is

@@ -111,8 +111,7 @@ class Fitting {
     /// bad bargain.
     bool is_almost_affordable(const Sampling& sampling) const {
         constexpr double overdraft = 1.2;
-        return price_.known &&
-               tried_seconds_ + seconds_of(price_, sampling) <= overdraft * work_seconds_;
+        return price_.known && tried_seconds_ + seconds_of(price_, sampling) <= overdraft * work_seconds_;
     }
 
     /// Tries larger and larger errors, as long as they may still win.

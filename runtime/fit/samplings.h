@@ -23,8 +23,8 @@ std::vector<Sampling> looks_before(const Sampling& finest, double seconds_a_samp
 /// Seconds of one processor for samples that meet nothing: no coarser model takes less.
 double least_seconds(const Sampling& sampling, ImageSize size);
 
-/// The finest sampling up to `wanted` that costs at most `samples` a pixel. Below one, pixels share samples in
-/// blocks, of coarsest_block pixels a side at most. Samples that are too few to be denoised are not.
+/// The finest sampling up to `wanted` that costs at most `samples` a pixel. Below one, pixels share samples
+/// in blocks, of coarsest_block pixels a side at most. Samples that are too few to be denoised are not.
 Sampling affordable_sampling(const Sampling& wanted, double samples);
 inline constexpr int coarsest_block = 8;
 

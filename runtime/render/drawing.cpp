@@ -88,7 +88,8 @@ bool Drawing::denoise(PictureTracer& tracer, const Sampling& sampling, const Fil
     const WorkerThreads workers(options_.threads);
     std::vector<PixelFeatures> features(pixels());
     if (!tracer.trace_features(sampling.feature_rays(), control_by(workers), window_, features)) return false;
-    Denoised denoised = graftal::denoise(*samples_, features, window_.width, window_.height, film, workers, cancel_);
+    Denoised denoised =
+        graftal::denoise(*samples_, features, window_.width, window_.height, film, workers, cancel_);
     if (cancel_.raised()) return false;
     picture_ = std::move(denoised.picture);
     TraceStatistics& rays = report_.rays;
@@ -103,7 +104,8 @@ bool Drawing::denoise(PictureTracer& tracer, const Sampling& sampling, const Fil
 
 bool Drawing::has_room_for_samples() const {
     constexpr std::uint64_t share = 4; // of the memory
-    return pixels() * (sizeof(NoiseMeter) + sizeof(PixelFeatures)) < options_.compile.detail.memory_bytes / share;
+    return pixels() * (sizeof(NoiseMeter) + sizeof(PixelFeatures)) <
+           options_.compile.detail.memory_bytes / share;
 }
 
 void Drawing::note(const Sampling& sampling, std::size_t traced) {

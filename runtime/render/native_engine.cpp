@@ -303,8 +303,8 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     const View& view = prepared.viewed->view;
     if (options.fit) return trace_fitted(prepared, options, preparing, cancel, compilation);
     PicturePlan plan = plan_picture(prepared, options);
-    // The edges of a part would differ from those of the whole. Coverage, which is never denoised, must fit the
-    // light of a transparent picture.
+    // The edges of a part would differ from those of the whole. Coverage, which is never denoised, must fit
+    // the light of a transparent picture.
     if (options.tile || (options.compile.view.transparent && !options.denoise)) plan.wanted.denoise = false;
     FileFilm file(options, prepared.prepared->cut);
     Drawing drawing(view, options, options.film ? *options.film : file, cancel);

@@ -129,7 +129,8 @@ class TileDenoiser {
                  int width, int height, const Film& film)
         : samples_(samples), features_(features), width_(width), height_(height), film_(film) {
         scales_.fill(1);
-        for (const std::size_t n : {near_feature, light_feature}) scales_[n] = scale_of(n);
+        for (const std::size_t n : {near_feature, light_feature})
+            scales_[n] = scale_of(n);
     }
 
     void run(int left, int top, Denoised& result) const {
@@ -313,8 +314,8 @@ class TileDenoiser {
         return static_cast<float>(255 * (developed(at + step, film_) - developed(at, film_)) / step);
     }
 
-    /// Mixes the best estimate and the mean so that the error of both is least, were they independent. Without
-    /// samples there is the estimate alone.
+    /// Mixes the best estimate and the mean so that the error of both is least, were they independent.
+    /// Without samples there is the estimate alone.
     void choose(std::size_t pixel, int x, int y, std::vector<Estimate>& estimates, const Range& range,
                 Denoised& result) const {
         const NoiseMeter& meter = samples_[pixel];
@@ -330,8 +331,7 @@ class TileDenoiser {
         const Eigen::Array3f light = range.nearest(best->light.at(x, y).array());
         for (int c = 0; c < 3; ++c) {
             const auto mean = static_cast<float>(meter.mean()[c]);
-            result.picture.pixels[3 * pixel + static_cast<std::size_t>(c)] =
-                mean + share * (light[c] - mean);
+            result.picture.pixels[3 * pixel + static_cast<std::size_t>(c)] = mean + share * (light[c] - mean);
         }
     }
 
@@ -349,8 +349,8 @@ double Denoised::mean_error_255() const {
            std::max<double>(1, static_cast<double>(errors_255.size()));
 }
 
-Denoised denoise(const std::vector<NoiseMeter>& samples, const std::vector<PixelFeatures>& features, int width,
-                 int height, const Film& film, const Workers& workers, const CancelFlag& cancel) {
+Denoised denoise(const std::vector<NoiseMeter>& samples, const std::vector<PixelFeatures>& features,
+                 int width, int height, const Film& film, const Workers& workers, const CancelFlag& cancel) {
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     GRAFTAL_CHECK(samples.size() == pixels && features.size() == pixels, "denoise: one of each a pixel");
     Denoised result{{width, height, 3, std::vector<float>(3 * pixels)}, std::vector<float>(pixels)};

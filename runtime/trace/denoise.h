@@ -23,14 +23,16 @@ inline constexpr std::size_t near_feature = 7, light_feature = 8;
 ///
 /// Requires samples taken in halves (Sampling::denoise), and as many samples and features as pixels.
 /// Ensures linear light, and the same bits on any number of workers. A pixel with one sample keeps it; one
-/// without shows what its features and its neighbours tell. What it returns after `cancel` was raised is of no use.
+/// without shows what its features and its neighbours tell. What it returns after `cancel` was raised is of
+/// no use.
 struct Denoised {
     Image picture;
     std::vector<float> errors_255; ///< about what is left of each pixel's, as the film shows it
 
     double mean_error_255() const;
 };
-Denoised denoise(const std::vector<NoiseMeter>& samples, const std::vector<PixelFeatures>& features, int width,
-                 int height, const Film& film, const Workers& workers, const CancelFlag& cancel = {});
+Denoised denoise(const std::vector<NoiseMeter>& samples, const std::vector<PixelFeatures>& features,
+                 int width, int height, const Film& film, const Workers& workers,
+                 const CancelFlag& cancel = {});
 
 } // namespace graftal

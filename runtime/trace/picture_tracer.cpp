@@ -51,7 +51,8 @@ class FeatureSums {
         const Tile around = common({first.x, first.y, 3, 3}, tile_);
         std::array<float, 3> across{};
         for (std::size_t i = 0; i < across.size(); ++i)
-            across[i] = static_cast<float>(PixelFilter::weight(place.x - first.x - static_cast<double>(i) - 0.5));
+            across[i] =
+                static_cast<float>(PixelFilter::weight(place.x - first.x - static_cast<double>(i) - 0.5));
         for (int y = around.y; y < around.y + around.height; ++y) {
             const auto down = static_cast<float>(PixelFilter::weight(place.y - y - 0.5));
             for (int x = around.x; x < around.x + around.width; ++x) {
@@ -109,7 +110,8 @@ class Worker {
                         std::vector<PixelFeatures>& features) {
         window_ = window;
         FeatureSums sums(tile);
-        const Tile around = common({tile.x - 1, tile.y - 1, tile.width + 2, tile.height + 2}, whole_of(view_.size));
+        const Tile around =
+            common({tile.x - 1, tile.y - 1, tile.width + 2, tile.height + 2}, whole_of(view_.size));
         std::array<Ray, Surfaces::most_together> ahead;
         std::array<glm::dvec2, Surfaces::most_together> places;
         std::vector<SampleStream> randoms(ahead.size(), SampleStream(0, 0));

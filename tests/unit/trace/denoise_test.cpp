@@ -65,8 +65,7 @@ struct Sampled {
 class Backwards : public Workers {
   public:
     int count() const override { return 3; }
-    int for_each(std::uint64_t tasks,
-                 const std::function<void(int, std::uint64_t)>& work) const override {
+    int for_each(std::uint64_t tasks, const std::function<void(int, std::uint64_t)>& work) const override {
         for (std::uint64_t i = tasks; i-- > 0;)
             work(static_cast<int>(i % 3), i);
         return 3;
@@ -82,7 +81,8 @@ PixelFeatures wall(int x, int y) {
 
 Rgb linear(int, int, const PixelFeatures& f) {
     if (f[0] == 0) return Rgb(0.6);
-    return {0.5 * static_cast<double>(f[1]), 0.5 * static_cast<double>(f[2]), 0.1 + 0.3 * static_cast<double>(f[7])};
+    return {0.5 * static_cast<double>(f[1]), 0.5 * static_cast<double>(f[2]),
+            0.1 + 0.3 * static_cast<double>(f[7])};
 }
 
 TEST(Denoise, LightThatFollowsTheFeaturesLosesMostOfItsNoise) {
@@ -95,7 +95,9 @@ TEST(Denoise, LightThatFollowsTheFeaturesLosesMostOfItsNoise) {
 TEST(Denoise, DetailThatNoFeatureShowsStays) {
     // A pattern of single pixels on an even wall: an average would be 20 times worse than the samples.
     const auto plain = [](int, int) { return PixelFeatures{1, 0.5f, 0.5f, 0.5f, 0, 0, 1, 1, 0}; };
-    const auto pixels = [](int x, int y, const PixelFeatures&) { return Rgb((x * 7 + y * 3) % 5 < 2 ? 0.6 : 0.2); };
+    const auto pixels = [](int x, int y, const PixelFeatures&) {
+        return Rgb((x * 7 + y * 3) % 5 < 2 ? 0.6 : 0.2);
+    };
     for (const int count : {4, 16, 64}) {
         const Sampled sampled(count, plain, pixels, 0.2);
         EXPECT_LT(sampled.error_of_denoised(), 1.05 * sampled.error_of_mean()) << count;

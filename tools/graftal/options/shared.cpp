@@ -330,12 +330,13 @@ void add_drawing(CLI::App& app, Options& options) {
         ->check(CLI::Range(0.0, 255.0).description(""))
         ->type_name("N")
         ->take_last();
-    add_value(app, "--denoise", "on|off", "Take noise out of soft light (default: on, but for '--quality best')",
-              "on or off",
-              [](const std::string& text) {
-                  return text == "on" ? std::optional(true) : text == "off" ? std::optional(false) : std::nullopt;
-              },
-              [&options](bool on) { options.render.denoise = on; });
+    add_value(
+        app, "--denoise", "on|off", "Take noise out of soft light (default: on, but for '--quality best')",
+        "on or off",
+        [](const std::string& text) {
+            return text == "on" ? std::optional(true) : text == "off" ? std::optional(false) : std::nullopt;
+        },
+        [&options](bool on) { options.render.denoise = on; });
     app.add_flag("--test-listed-lights", options.render.listed_lights,
                  "Draw soft light from the list of lights that POV-Ray gets");
     app.add_flag("--unconfined", options.render.unconfined,

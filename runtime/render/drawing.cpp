@@ -5,6 +5,7 @@
 
 #include "runtime/fit/fit_picture.h"
 #include "runtime/system/worker_threads.h"
+#include "runtime/trace/denoise.h"
 
 namespace graftal {
 

@@ -6,6 +6,7 @@
 
 #include "runtime/image/develop.h"
 #include "runtime/studio/clock.h"
+#include "runtime/trace/denoise.h"
 
 namespace graftal {
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "compiler/light/film.h"
@@ -8,13 +7,17 @@
 #include "compiler/support/workers.h"
 #include "runtime/image/image.h"
 #include "runtime/trace/noise_meter.h"
+#include "runtime/trace/pixel_features.h"
 
 namespace graftal {
 
-/// The first surfaces behind a pixel as linear measures, so that a pixel that sees several shows their
-/// mixture: coverage, and times it the colour (3), the normal (3), the nearness, and the light of lamps.
-using PixelFeatures = std::array<float, 9>;
-inline constexpr std::size_t near_feature = 7, light_feature = 8;
+/// A picture without most of its noise, in linear light.
+struct Denoised {
+    Image picture;
+    std::vector<float> errors_255; ///< about what is left of each pixel's, as the film shows it
+
+    double mean_error_255() const;
+};
 
 /// A picture from samples of light that is noisy, and from features that are less so. A window around each
 /// pixel gives light as a linear function of the features (K. He et al., "Guided image filtering", 2013; B.
@@ -22,15 +25,9 @@ inline constexpr std::size_t near_feature = 7, light_feature = 8;
 /// The other half tells the error of that estimate; it and the samples' own error weigh the two.
 ///
 /// Requires samples taken in halves (Sampling::denoise), and as many samples and features as pixels.
-/// Ensures linear light, and the same bits on any number of workers. A pixel with one sample keeps it; one
+/// Ensures the same bits on any number of workers. A pixel with one sample keeps it; one
 /// without shows what its features and its neighbours tell. What it returns after `cancel` was raised is of
 /// no use.
-struct Denoised {
-    Image picture;
-    std::vector<float> errors_255; ///< about what is left of each pixel's, as the film shows it
-
-    double mean_error_255() const;
-};
 Denoised denoise(const std::vector<NoiseMeter>& samples, const std::vector<PixelFeatures>& features,
                  int width, int height, const Film& film, const Workers& workers,
                  const CancelFlag& cancel = {});

@@ -41,49 +41,6 @@ int steps_of(const Sampling& sampling) {
     return sampling.antialias ? 1 << (*sampling.antialias - 1) : 1;
 }
 
-/// Features of the pixels of a tile, by rays that each counts for the nine pixels around it.
-class FeatureSums {
-  public:
-    explicit FeatureSums(const Tile& tile) : tile_(tile), sums_(tile.pixels()), weights_(tile.pixels()) {}
-
-    void add(const glm::dvec2& place, const PixelFeatures& features) {
-        const glm::ivec2 first = glm::ivec2(glm::floor(place)) - 1;
-        const Tile around = common({first.x, first.y, 3, 3}, tile_);
-        std::array<float, 3> across{};
-        for (std::size_t i = 0; i < across.size(); ++i)
-            across[i] =
-                static_cast<float>(PixelFilter::weight(place.x - first.x - static_cast<double>(i) - 0.5));
-        for (int y = around.y; y < around.y + around.height; ++y) {
-            const auto down = static_cast<float>(PixelFilter::weight(place.y - y - 0.5));
-            for (int x = around.x; x < around.x + around.width; ++x) {
-                const float weight = across[static_cast<std::size_t>(x - first.x)] * down;
-                const std::size_t i = index(x, y);
-                weights_[i] += weight;
-                for (std::size_t n = 0; n < features.size(); ++n)
-                    sums_[i][n] += weight * features[n];
-            }
-        }
-    }
-
-    PixelFeatures mean(int x, int y) const {
-        PixelFeatures mean = sums_[index(x, y)];
-        const float weight = weights_[index(x, y)];
-        for (float& value : mean)
-            value = weight > 0 ? value / weight : 0;
-        return mean;
-    }
-
-  private:
-    std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y - tile_.y) * static_cast<std::size_t>(tile_.width) +
-               static_cast<std::size_t>(x - tile_.x);
-    }
-
-    Tile tile_;
-    std::vector<PixelFeatures> sums_;
-    std::vector<float> weights_;
-};
-
 /// One thread's tools, and what it keeps for their memory.
 class Worker {
   public:
@@ -124,7 +81,7 @@ class Worker {
                 traversal_.begin_path();
                 PixelFeatures seen{};
                 if (shader_.first_hit(ahead[i], met, ahead_, i))
-                    seen = features_of(AovSample(met, ahead[i], view_),
+                    seen = features_of(AovSample(met, ahead[i], view_), view_.camera,
                                        shader_.light_of_lamps(ahead[i], met, randoms[i]));
                 sums.add(places[i], seen);
             }
@@ -189,21 +146,6 @@ class Worker {
         static const PixelFilter filter;
         const glm::dvec2 place = random.next();
         return {filter.offset(place.x), filter.offset(place.y)};
-    }
-
-    /// Nearness is a linear measure in the picture: on a plane, and where pixels mix.
-    PixelFeatures features_of(const AovSample& sample, const Rgb& light) const {
-        if (!sample.met) return {};
-        const double near = view_.camera.orthographic ? -sample.depth : 1 / sample.depth;
-        PixelFeatures features{1};
-        for (int c = 0; c < 3; ++c) {
-            features[static_cast<std::size_t>(1 + c)] = static_cast<float>(sample.albedo[c]);
-            features[static_cast<std::size_t>(4 + c)] = static_cast<float>(sample.normal[c]);
-        }
-        features[near_feature] = static_cast<float>(near);
-        const double grey = (light.x + light.y + light.z) / 3;
-        features[light_feature] = static_cast<float>(std::isfinite(grey) ? grey : 0);
-        return features;
     }
 
     Sight sight(double x, double y, SampleStream random) const {

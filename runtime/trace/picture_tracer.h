@@ -8,9 +8,9 @@
 #include "compiler/support/workers.h"
 #include "runtime/image/image.h"
 #include "runtime/trace/aovs.h"
-#include "runtime/trace/denoise.h"
 #include "runtime/trace/model/trace_model.h"
 #include "runtime/trace/noise_meter.h"
+#include "runtime/trace/pixel_features.h"
 #include "runtime/trace/shade/shade.h"
 #include "runtime/trace/tile.h"
 

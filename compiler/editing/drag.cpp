@@ -276,7 +276,7 @@ class Dragger {
         return change;
     }
 
-    /// As many as the hand can tell.
+    /// Decimals that the hand can tell.
     int decimals(Vec3 slope) const {
         constexpr double noticed = 0.02; // of the way
         const double grain = part_.grain > 0 ? part_.grain : noticed * glm::length(wanted_);

@@ -234,6 +234,8 @@ constinit const Engine native_engine = {
     .refusal = [](const RenderOptions& options) -> std::string {
         if (options.aovs && !is_exr_name(options.output))
             return "--aovs: only an EXR has room for more channels: name the picture with '-o FILE.exr'";
+        if (options.tile && options.denoise.value_or(false))
+            return "--denoise: a part of a picture lacks its neighbours: leave it out, or draw the whole";
         if (!options.keep.empty())
             return "--keep: the native engine writes no scene; leave out --keep, or give '--engine povray'";
         if (options.compile.detail.visible_only)

@@ -10,10 +10,10 @@
 #include "compiler/session/stages.h"
 #include "runtime/studio/asks.h"
 #include "runtime/studio/binary_message.h"
-#include "runtime/studio/clock.h"
 #include "runtime/studio/file_asks.h"
 #include "runtime/studio/message_reader.h"
 #include "runtime/studio/model_message.h"
+#include "runtime/studio/picture/clock.h"
 #include "runtime/studio/text_asks.h"
 
 namespace graftal {

@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/studio/film_framing.h"
+#include "runtime/studio/picture/progressive_picture.h"
 #include "runtime/studio/pointer.h"
-#include "runtime/studio/progressive_picture.h"
 #include "runtime/studio/studio_home.h"
 #include "runtime/studio/studio_state.h"
 

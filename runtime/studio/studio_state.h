@@ -26,7 +26,7 @@ struct StudioState {
 /// Pixels that a picture of the page may have, and along a side.
 inline constexpr std::int64_t most_page_pixels = std::int64_t{1} << 23;
 inline constexpr int most_page_side = 16384;
-/// Of a state, and of a film.
+/// Steps of a state, and of a film.
 inline constexpr std::uint64_t most_steps = 4'000'000'000;
 
 /// Reads the fields `camera`, `at` and `zoom`. Throw BadMessage.

@@ -31,7 +31,7 @@ struct Sampling {
     double samples_a_pixel() const;
     /// Rays without light by which a pixel is denoised; 0 where it is not.
     int feature_rays() const;
-    /// What the rays of a pixel take, in samples.
+    /// The price of the rays of a pixel, in samples.
     double cost_in_samples() const;
     bool operator==(const Sampling&) const = default;
 };

@@ -26,7 +26,8 @@ TEST_F(DenoisedPictures, AreNearerToTheTruthThanTheirSamples) {
     for (const std::string scene : {"ifs/menger_sponge.rifs", "hart/elm.inst", "hart/pound_sign.rifs"}) {
         const Image truth = draw(scene, "--samples 256 --denoise off");
         const auto error = [&](int samples, const char* denoise) {
-            return compare_images(truth, draw(scene, fmt::format("--samples {} --denoise {}", samples, denoise)))
+            return compare_images(truth,
+                                  draw(scene, fmt::format("--samples {} --denoise {}", samples, denoise)))
                 .rms;
         };
         for (const int samples : {2, 4, 8})
@@ -48,9 +49,11 @@ TEST_F(DenoisedPictures, SparseSamplesFillThePicture) {
     const std::string scene = "surroundings/cherry.lsys";
     const Image truth = draw(scene, "--samples 64");
     const auto drawn = [&](const std::string& denoise) {
-        const RunResult result = graftal("render " + source_path("scenes/" + scene) +
-                                         " --engine native --size 160x90 --work 0.5 --no-progressive -o a.png "
-                                         "--denoise " + denoise);
+        const RunResult result =
+            graftal("render " + source_path("scenes/" + scene) +
+                    " --engine native --size 160x90 --work 0.5 --no-progressive -o a.png "
+                    "--denoise " +
+                    denoise);
         EXPECT_EQ(result.status, 0) << result.err;
         return compare_images(truth, picture("a.png")).rms;
     };

@@ -13,7 +13,7 @@
 
 namespace graftal {
 
-/// What a hand can tell that drags a map.
+/// The hand that drags a map, by what it can tell.
 struct Hand {
     double grain = 0; ///< a length of the model that is just seen; 0: numbers are written exactly
     Box reach;        ///< of what is mapped; empty: about one unit

@@ -64,7 +64,8 @@ TEST(PixelFilter, WeighsAsOftenAsSamplesFall) {
     const PixelFilter filter;
     for (const double u : {0.1, 0.3, 0.5, 0.8}) {
         const double density = 2e-3 / (filter.offset(u + 1e-3) - filter.offset(u - 1e-3));
-        EXPECT_NEAR(density, PixelFilter::weight(filter.offset(u)) / (0.35875 * 2 * PixelFilter::radius_px), 0.01);
+        EXPECT_NEAR(density, PixelFilter::weight(filter.offset(u)) / (0.35875 * 2 * PixelFilter::radius_px),
+                    0.01);
     }
 }
 

@@ -72,6 +72,8 @@ std::string refusal(const FarmOptions& farm, const Options& planned) {
                "the "
                "whole";
     if (farm.tile && render.aovs) return "--aovs: tiles hold colours only; leave it out, or draw frames";
+    if (farm.tile && render.denoise.value_or(false))
+        return "--denoise: tiles are drawn apart, and noise is taken out of whole pictures: leave it out";
     if (!farm.sweeps.empty() && !farm.result.ends_with(".png") && !farm.result.empty())
         return fmt::format("--result: '{}': the name of a contact sheet must end in .png", farm.result);
     if (!farm.sweeps.empty() && (render.aovs || render.format == SampleFormat::linear16))

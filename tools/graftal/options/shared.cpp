@@ -331,7 +331,7 @@ void add_drawing(CLI::App& app, Options& options) {
         ->type_name("N")
         ->take_last();
     add_value(
-        app, "--denoise", "on|off", "Take noise out of soft light (default: on, but for '--quality best')",
+        app, "--denoise", "on|off", "Take noise out of soft light (default: on, except for '--quality best')",
         "on or off",
         [](const std::string& text) {
             return text == "on" ? std::optional(true) : text == "off" ? std::optional(false) : std::nullopt;

@@ -1,11 +1,11 @@
-#include "runtime/studio/progressive_picture.h"
+#include "runtime/studio/picture/progressive_picture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "runtime/image/develop.h"
-#include "runtime/studio/clock.h"
+#include "runtime/studio/picture/clock.h"
 #include "runtime/trace/denoise.h"
 
 namespace graftal {
@@ -248,7 +248,7 @@ void ProgressivePicture::end_pass(const PictureListener& listener) {
     listener.on_pass(shown);
 }
 
-/// The last pass is there, but for its noise.
+/// The last pass is there, noise and all.
 void ProgressivePicture::finish() {
     if (phase_ == Phase::fine && sampling_->feature_rays() > 0) {
         phase_ = Phase::denoise;

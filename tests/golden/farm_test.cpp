@@ -40,7 +40,7 @@ TEST_F(Farm, TilesMakeTheFileOfOneRun) {
         succeed("farm plan " + look + "--tiles 37x20 -o job -q");
         succeed("farm submit job --local 2 -q");
         succeed("farm merge job -q");
-        succeed("render " + look + "--engine native --denoise off -q -o one.png");
+        succeed("render " + look + "--engine native -q -o one.png");
         expect_same(read("job/job.json").find("sierpinski") != std::string::npos ? "job/sierpinski.png"
                                                                                  : "job/pound_sign.png",
                     "one.png");

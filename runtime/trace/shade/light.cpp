@@ -34,8 +34,7 @@ Rgb Shader::lit(const Point& point, bool sky_later, SampleStream& random) {
 
 Rgb Shader::light_of_lamps(const Ray& ray, const SurfaceHit& first, SampleStream& random) {
     if (lamps_.empty() && areas_.empty()) return Rgb(0.0);
-    const Inside& inside = camera_inside_;
-    const Point point = point_of(ray, inside, first, random);
+    const Point point = point_of(ray, camera_inside_, first, random);
     return point.shone_on * of_lamps(point, least_distance(point.position, shadow_pixels), random);
 }
 

@@ -20,7 +20,7 @@ class Shares : public ::testing::Test {
   protected:
     void SetUp() override { ASSERT_TRUE(directory_.create().ok()); }
 
-    /// What the parts of a model's root show; what is said of a picture or a cloud of it.
+    /// Sizes of the parts of a model's root in its picture, and messages about a cloud of it.
     std::vector<double> shown(const std::string& text, const char* output = "a.png") {
         const std::string path = directory_.path() + "/model.inst";
         EXPECT_TRUE(write_text(path, text).ok());

@@ -268,13 +268,13 @@ class Baker {
         baked_.triangles += part.mesh.triangles.size();
     }
 
-    /// Counts what the last leaf has brought. False where that is too much.
+    /// Counts what the last leaf has brought. False where that is too much: triangles of pictures have corners
+    /// of their own, and a flat mesh may lose what other faces hide.
     bool goes_on(const BakedPart& part, const MeshBuilder& builder) {
-        constexpr std::uint64_t price_of_textured = 2;
+        const std::size_t price = part.textured ? 2 : 1, most_hidden = part.smooth ? 1 : 4;
         const std::size_t here = builder.triangle_count();
-        baked_.made_triangles +=
-            (here - std::exchange(counted_, here)) * (part.textured ? price_of_textured : 1);
-        baked_.complete = baked_.triangles + here <= 4 * max_triangles_ &&
+        baked_.made_triangles += price * (here - std::exchange(counted_, here));
+        baked_.complete = baked_.triangles + price * here <= most_hidden * max_triangles_ &&
                           baked_.made_triangles <= request_.most_made_triangles;
         return baked_.complete;
     }

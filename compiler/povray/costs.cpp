@@ -23,6 +23,13 @@ double povray_leaf_bytes(const Primitive& primitive) {
     return row.bytes(primitive) + (row.mostly_needs_matrix ? PovrayCosts::matrix : 0);
 }
 
+double povray_bytes(const Mesh& mesh) {
+    return PovrayCosts::triangle * static_cast<double>(mesh.triangles.size()) +
+           PovrayCosts::vertex * static_cast<double>(mesh.vertices.size()) +
+           PovrayCosts::normal * static_cast<double>(mesh.normals.size()) +
+           PovrayCosts::uv * static_cast<double>(mesh.uv.size());
+}
+
 double povray_bytes(const Cut& cut) {
     double bytes = PovrayCosts::base;
     for (const PlacementGroup& group : cut.groups) {
@@ -36,10 +43,7 @@ double povray_bytes(const Cut& cut) {
         if (palette.size() > 1) bytes += PovrayCosts::slot * static_cast<double>(palette.size());
     for (const Body& body : cut.bodies)
         if (const Mesh* mesh = std::get_if<Mesh>(&body.shape))
-            bytes += PovrayCosts::triangle * static_cast<double>(mesh->triangles.size()) +
-                     PovrayCosts::vertex * static_cast<double>(mesh->vertices.size()) +
-                     PovrayCosts::normal * static_cast<double>(mesh->normals.size()) +
-                     PovrayCosts::uv * static_cast<double>(mesh->uv.size());
+            bytes += povray_bytes(*mesh);
         else if (const Primitive& primitive = std::get<Primitive>(body.shape);
                  povray_primitive(primitive.kind()).declared_bytes)
             bytes += povray_primitive(primitive.kind()).declared_bytes(primitive);

@@ -38,6 +38,8 @@ struct SdlLengths {
 /// not, which need a matrix.
 double povray_leaf_bytes(const Primitive& primitive);
 
+double povray_bytes(const Mesh& mesh);
+
 /// POV-Ray's peak for this scene, the picture aside.
 double povray_bytes(const Cut& cut);
 

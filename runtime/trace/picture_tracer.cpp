@@ -31,7 +31,7 @@ constexpr int tile_size = 32;
 constexpr int samples_a_round = 16;
 
 /// Rays of a probe, for one thread at a time.
-constexpr std::uint64_t probe_piece = 32;
+constexpr std::uint64_t probe_piece = 4;
 
 /// 1 / g and 1 / g^2 of the plastic number g, g^3 = g + 1: no rational is near their combinations.
 const glm::dvec2 r2_step(0.7548776662466927, 0.5698402909980532);

@@ -23,7 +23,7 @@ CompiledModel parted_at(const CompiledModel& model, double mesh_triangles) {
     Weights weights(cut);
     Choice choice;
     choice.threshold = mesh_triangles;
-    AssemblyLimits limits{1'000'000, 4'000'000, 60};
+    AssemblyLimits limits{1e9, 60};
     ShellStore shells;
     std::optional<Cut> result =
         assemble(cut, symmetry, projection, root, choice, weights, false, shells, limits);

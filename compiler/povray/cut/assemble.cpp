@@ -8,6 +8,7 @@
 #include "compiler/detail/bake.h"
 #include "compiler/detail/shell/shares.h"
 #include "compiler/detail/work.h"
+#include "compiler/povray/costs.h"
 #include "compiler/povray/cut/grouping.h"
 #include "compiler/povray/cut/place_pieces.h"
 
@@ -24,14 +25,15 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
     if (!pieces) return std::nullopt;
     ShellShares shell_shares(cut, pieces->requests);
     std::vector<Baked> baked;
-    std::size_t triangles = 0;
+    double mesh_bytes = 0;
     double culled_detail = pieces->culled_detail;
     double tessellation_px = 0;
     for (BakeRequest& request : pieces->requests) {
         request.limit_normals = limit_normals;
         request.shells = &shells;
         request.self_shadows = self_shadows;
-        std::size_t most_triangles = limits.max_triangles - triangles;
+        const double memory_left = std::max(0.0, limits.memory_bytes - mesh_bytes);
+        auto most_triangles = static_cast<std::size_t>(memory_left / PovrayCosts::triangle) + 1;
         if (request.shell) {
             const ShellShare share = shell_shares.take(request, limits.work_seconds, most_triangles);
             request.most_shell_work = share.work;
@@ -43,7 +45,8 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
             static_cast<std::uint64_t>(std::min(limits.work_seconds, 1e6) * WorkRates::baked_triangles);
         baked.push_back(bake(cut, symmetry, request, most_triangles));
         if (limits.meter) limits.meter->add(baked.back().visits);
-        triangles += baked.back().triangles;
+        for (const BakedPart& part : baked.back().parts)
+            mesh_bytes += povray_bytes(part.mesh);
         limits.work_seconds -=
             limits.slowness * static_cast<double>(baked.back().visits) / WorkRates::visits +
             static_cast<double>(
@@ -51,7 +54,7 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
                 WorkRates::baked_triangles +
             static_cast<double>(baked.back().shell_work) / WorkRates::shell_points;
         if (limits.work_seconds < 0) return std::nullopt;
-        if (!baked.back().complete || triangles > limits.max_triangles) return std::nullopt;
+        if (!baked.back().complete || mesh_bytes > limits.memory_bytes) return std::nullopt;
         culled_detail =
             std::max(culled_detail, baked.back().culled_detail * pieces->seen_share(baked.size() - 1));
         tessellation_px = std::max(tessellation_px, baked.back().tessellation_px);

@@ -165,10 +165,7 @@ class Cutter {
         if (!(choice_.bytes <= estimate_slack * memory)) return failed(false);
         // The last try still has half of the work that is left.
         const double work_seconds = 0.5 * work_seconds_left_;
-        AssemblyLimits limits{static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::least_placement) +
-                                  1,
-                              static_cast<std::size_t>(std::max(0.0, memory) / PovrayCosts::triangle) + 1,
-                              work_seconds, slowness_of_graph(prepared_.instances), &meter_};
+        AssemblyLimits limits{memory, work_seconds, slowness_of_graph(prepared_.instances), &meter_};
         std::optional<Cut> cut =
             assemble(cut_, symmetry_, projection, root, choice_, weights, limit_normals(), *prepared_.shells,
                      limits, self_shadows(projection));

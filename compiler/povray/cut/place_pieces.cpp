@@ -17,6 +17,7 @@
 #include "compiler/detail/placed_set.h"
 #include "compiler/detail/work.h"
 #include "compiler/graph/walk.h"
+#include "compiler/povray/costs.h"
 #include "compiler/primitives/tessellate.h"
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
@@ -59,14 +60,14 @@ class Placing {
           holds_combined_(std::ranges::any_of(cut.nodes, &CutNode::is_combined)) {}
 
     bool run(const Piece& root, AssemblyLimits& limits) {
+        const double most_placements = limits.memory_bytes / PovrayCosts::least_placement;
         walk_.push({root});
         for (OperandPiece piece; walk_.next(piece);) {
             limits.work_seconds -= (1 + more_work_) / WorkRates::leaves;
             more_work_ = 0;
-            if (out_.things.size() + out_.runs.part_count() > limits.max_placements ||
-                limits.work_seconds < 0)
-                return false;
             const std::size_t before = out_.runs.part_count();
+            if (static_cast<double>(out_.things.size() + before) > most_placements || limits.work_seconds < 0)
+                return false;
             visit(piece);
             limits.work_seconds -= static_cast<double>(out_.runs.part_count() - before) / WorkRates::leaves;
         }

@@ -10,8 +10,7 @@
 namespace graftal {
 
 struct AssemblyLimits {
-    std::size_t max_placements = 0;
-    std::size_t max_triangles = 0;
+    double memory_bytes = 0;    ///< by PovrayCosts (costs.h)
     double work_seconds = 0;    ///< by WorkRates (work.h)
     double slowness = 1;        ///< slowness_of_graph()
     WorkMeter* meter = nullptr; ///< counts pieces; may be null

@@ -190,7 +190,7 @@ void Traversal::keep_flat_way(std::uint32_t frame_number) {
 
 void Traversal::meet_flat(std::uint32_t frame_number, std::uint32_t number, const RayRange& range, bool any) {
     met_flat_ = true;
-    more_work_ += RayWork::crushed;
+    look_at_flat(1);
     const Frame& frame = frames_[frame_number];
     FlatPart start = flat_child(frame.world_from_node, number, frame.steps, frame.cut);
     scale_child(start, frame.scale);
@@ -225,7 +225,7 @@ bool Traversal::begin_flat(const FlatPart& part, const RayRange& range) {
 }
 
 void Traversal::push_flat_parts(const FlatPart& part, const TraceNode& node) {
-    more_work_ += RayWork::crushed * node.edge_count;
+    look_at_flat(node.edge_count);
     for (std::uint32_t i = 0; i < node.edge_count; ++i) {
         FlatPart child = flat_child(part.world_from_node, node.first_edge + i, part.steps, false);
         scale_child(child, part.scale);
@@ -277,7 +277,7 @@ void Traversal::meet_flat_part(const FlatPart& part, const RayRange& range, std:
     if (node.kind == TraceNode::Kind::run && !cut) return meet_flat_items(part, ball, range, frame_number);
     const std::uint32_t first = node.first_edge + (cut ? node.edge_count : 0);
     const std::uint32_t count = cut ? node.stop_edge_count : node.edge_count;
-    more_work_ += RayWork::crushed * count;
+    look_at_flat(count);
     for (std::uint32_t i = 0; i < count; ++i) {
         FlatPart child = flat_child(part.world_from_node, first + i, part.steps, cut);
         if (!may_meet(child, range)) continue;

@@ -252,6 +252,14 @@ class Traversal final : public Surfaces {
         if (visits_ >= path_limit_) return std::min(least, model_.most_visits);
         return std::min(path_limit_ - visits_, model_.most_visits);
     }
+    /// Counts parts that are looked at in the world. Each takes longer than many that are gone into, so they
+    /// are of the visits that a ray may make, but take no patience.
+    void look_at_flat(std::uint64_t parts) {
+        const std::uint64_t work = RayWork::crushed * parts;
+        visits_ += work / RayWork::part;
+        patience_ += work / RayWork::part;
+        more_work_ += work % RayWork::part;
+    }
     /// False once the ray went into too many parts, and hurrying did not help.
     bool goes_on();
     /// intersect() of intersect.h within the visits that the ray has left, and what that took.

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <optional>
+#include <variant>
 
 #include <gtest/gtest.h>
 
@@ -10,6 +12,7 @@
 #include "compiler/detail/graph/cut_graph.h"
 #include "compiler/detail/shell/store.h"
 #include "compiler/detail/weights.h"
+#include "compiler/povray/costs.h"
 #include "compiler/povray/cut/assemble.h"
 #include "runtime/system/memory_limit.h"
 #include "tests/unit/detail/models.h"
@@ -19,11 +22,11 @@ namespace {
 
 constexpr std::uint64_t memory_bytes = 256u << 20;
 
-/// A ball at each of 16^6 places.
-Graph balls() {
+/// A ball at each of 16^levels places.
+Graph balls(int levels = 6) {
     Graph graph;
     ObjectId whole = graph.primitive(PrimitiveKind::sphere);
-    for (int level = 0; level < 6; ++level) {
+    for (int level = 0; level < levels; ++level) {
         Object object{"level" + std::to_string(level), {}, {}, {}, {}};
         for (int i = 0; i < 16; ++i)
             object.instances.push_back(
@@ -88,7 +91,24 @@ TEST(BakeGivenUp, CountsTheTrianglesThatItMade) {
     EXPECT_LT(stopped.made_triangles, 6100u);
 }
 
-/// Whether all of it becomes one mesh, or as many placements as there are balls.
+/// The model as one mesh, or with a threshold of 0 as many placements as there are balls.
+std::optional<Cut> assembled(const Model& model, double threshold, AssemblyLimits& limits) {
+    View view;
+    view.size = {64, 48};
+    view.camera.location = {0, 0, -10};
+    DetailOptions options;
+    options.error_px = 0;
+    const Projection projection(view, options, 0, 1e-3);
+    Weights weights(model.cut);
+    Piece root;
+    root.node = model.cut.root;
+    Choice choice;
+    choice.threshold = threshold;
+    choice.spelt_out = threshold == 0;
+    ShellStore shells;
+    return assemble(model.cut, model.symmetry, projection, root, choice, weights, false, shells, limits);
+}
+
 TEST(OutOfMemory, WorkOfAnAssemblyIsTakenOff) {
 #ifdef __SANITIZE_ADDRESS__
     GTEST_SKIP() << "sanitizers end a program whose memory ends";
@@ -96,28 +116,34 @@ TEST(OutOfMemory, WorkOfAnAssemblyIsTakenOff) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const auto assemble_within = [](double threshold) {
         const Model model;
-        View view;
-        view.size = {64, 48};
-        view.camera.location = {0, 0, -10};
-        DetailOptions options;
-        options.error_px = 0;
-        const Projection projection(view, options, 0, 1e-3);
-        Weights weights(model.cut);
-        Piece root;
-        root.node = model.cut.root;
-        Choice choice;
-        choice.threshold = threshold;
-        choice.spelt_out = threshold == 0;
-        ShellStore shells;
-        AssemblyLimits limits{SIZE_MAX / 8, SIZE_MAX / 8, 1000, 1};
+        AssemblyLimits limits{1e18, 1000, 1};
         limit_memory(memory_bytes);
-        const bool complete =
-            assemble(model.cut, model.symmetry, projection, root, choice, weights, false, shells, limits)
-                .has_value();
+        const bool complete = assembled(model, threshold, limits).has_value();
         std::_Exit(!complete && limits.work_seconds < 999.99 ? 0 : 1);
     };
     for (const double threshold : {0.0, 1e300})
         EXPECT_EXIT(assemble_within(threshold), testing::ExitedWithCode(0), "") << threshold;
+}
+
+/// Triangles alone were counted before: corners and normals took a compiler beyond the memory allowed.
+TEST(MemoryOfAnAssembly, CountsCornersOfMeshes) {
+    Model model;
+    model.graph = balls(2);
+    model.cut = test::cut_of(model.graph);
+    model.symmetry = find_symmetry(model.cut);
+    AssemblyLimits limits{1e18, 1000, 1};
+    const std::optional<Cut> cut = assembled(model, 1e300, limits);
+    ASSERT_TRUE(cut);
+    double triangles = 0, whole = 0;
+    for (const Body& body : cut->bodies)
+        if (const Mesh* mesh = std::get_if<Mesh>(&body.shape)) {
+            triangles += PovrayCosts::triangle * static_cast<double>(mesh->triangles.size());
+            whole += povray_bytes(*mesh);
+        }
+    ASSERT_GT(whole, triangles);
+    AssemblyLimits enough{whole, 1000, 1}, too_little{(triangles + whole) / 2, 1000, 1};
+    EXPECT_TRUE(assembled(model, 1e300, enough));
+    EXPECT_FALSE(assembled(model, 1e300, too_little));
 }
 
 } // namespace

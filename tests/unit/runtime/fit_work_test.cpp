@@ -222,6 +222,23 @@ TEST_F(FitWork, RaysGiveWayInMeshes) {
     EXPECT_LE(seconds * model.sampling.samples_a_pixel(), 1.5 * options.work_seconds);
 }
 
+// A part that is looked at in the world took as much as ten others, and counted as none: sixteen rays of a look
+// spent eleven times what it may.
+TEST_F(FitWork, RaysGiveWayAmongFlatParts) {
+    Graph graph = inner_cubes();
+    Object flat{"flat", {}, {}, {}, {}};
+    Affine crush;
+    crush.linear = Mat3(Vec3(1, 0, 0.3), Vec3(0, 1, 0.2), Vec3(0, 0, 0));
+    flat.instances.push_back({graph.root, crush, {}, {}, {}});
+    graph.root = graph.add(std::move(flat));
+    DetailOptions options;
+    options.error_px = 0.001;
+    options.work_seconds = 0.3;
+    const FittedModel model = fitted(graph, options, [](double) { return false; });
+    EXPECT_TRUE(model.rays_cut);
+    EXPECT_LE(model.tried_seconds, options.work_seconds);
+}
+
 // A tower of a few pixels' width among an empty picture was never met by a look, and took a quarter of an
 // hour.
 TEST_F(FitWork, SeesWhatIsThin) {

@@ -268,8 +268,8 @@ class Baker {
         baked_.triangles += part.mesh.triangles.size();
     }
 
-    /// Counts what the last leaf has brought. False where that is too much: triangles of pictures have corners
-    /// of their own, and a flat mesh may lose what other faces hide.
+    /// Counts what the last leaf has brought. False where that is too much: triangles of pictures have
+    /// corners of their own, and a flat mesh may lose what other faces hide.
     bool goes_on(const BakedPart& part, const MeshBuilder& builder) {
         const std::size_t price = part.textured ? 2 : 1, most_hidden = part.smooth ? 1 : 4;
         const std::size_t here = builder.triangle_count();

@@ -41,7 +41,6 @@ struct PackedEdges {
     std::vector<std::optional<MaterialId>> materials; ///< by the colours of the run
 
     explicit operator bool() const { return run != nullptr; }
-    bool operator==(const PackedEdges&) const = default;
 
     std::size_t size() const;
     Iterator begin() const { return {*this, 0}; }

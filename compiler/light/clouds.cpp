@@ -198,14 +198,16 @@ struct Layer {
 
 } // namespace
 
-std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clouds& clouds, int rows) {
+std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clouds& clouds, int rows,
+                                                 const CancelFlag& cancel) {
     GRAFTAL_CHECK(!sky.picture && sky.up == Vec3(0, 1, 0),
                   "cloudy_picture: an upright sky without a picture");
     const Layer layer(sky, clouds);
     const int columns = 2 * rows;
     std::vector<SkyPicture::Texel> texels;
     texels.reserve(static_cast<std::size_t>(columns) * rows);
-    for (int row = 0; row < rows; ++row)
+    for (int row = 0; row < rows; ++row) {
+        if (cancel.raised()) throw Cancelled();
         for (int column = 0; column < columns; ++column) {
             const double from_zenith = std::numbers::pi * (row + 0.5) / rows, u = (column + 0.5) / columns;
             const Rgb light = row < rows / 2 ? layer.texel(u, from_zenith, std::numbers::pi / rows)
@@ -213,6 +215,7 @@ std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clou
             const glm::vec3 texel(glm::clamp(light, Rgb(0.0), Rgb(most_radiance)));
             texels.push_back({texel.r, texel.g, texel.b});
         }
+    }
     return std::make_shared<const SkyPicture>(columns, rows, std::move(texels));
 }
 
@@ -225,16 +228,26 @@ int cloud_rows(double work_seconds) {
     return rows;
 }
 
-void CloudPictures::set_rows(int rows) {
+CloudPictures::Drawing::Drawing(CloudPictures& pictures, int rows, CancelFlag cancel)
+    : pictures_(pictures), rows_(rows) {
+    pictures_.set(rows, std::move(cancel));
+}
+
+CloudPictures::Drawing::~Drawing() {
+    pictures_.set(rows_, {});
+}
+
+void CloudPictures::set(int rows, CancelFlag cancel) {
     const std::lock_guard lock(mutex_);
     rows_ = rows;
+    cancel_ = std::move(cancel);
 }
 
 std::shared_ptr<const SkyPicture> CloudPictures::picture(const SkyLight& sky, const Clouds& clouds) {
     const std::lock_guard lock(mutex_);
     std::shared_ptr<const SkyPicture> picture = picture_.lock();
     if (picture && sky_ == sky && clouds_ == clouds && picture_rows_ == rows_) return picture;
-    picture = cloudy_picture(sky, clouds, rows_);
+    picture = cloudy_picture(sky, clouds, rows_, cancel_);
     picture_rows_ = rows_;
     sky_ = sky;
     clouds_ = clouds;

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "compiler/light/sky_light.h"
+#include "compiler/support/control.h"
 
 namespace graftal {
 
@@ -24,9 +25,9 @@ inline constexpr int most_cloud_rows = 1024;
 /// is a sum of gradient noise (Perlin, "Improving noise", 2002) of falling wavelengths; light comes through
 /// them and is scattered forwards by Henyey and Greenstein's function (1941), and is lost on its way from the
 /// sun. No measured sky: a likeness. Requires an upright sky that shows no picture. The same values give the
-/// same texels.
+/// same texels. Throws Cancelled within a row of texels after `cancel` is raised.
 std::shared_ptr<const SkyPicture> cloudy_picture(const SkyLight& sky, const Clouds& clouds,
-                                                 int rows = most_cloud_rows);
+                                                 int rows = most_cloud_rows, const CancelFlag& cancel = {});
 
 /// Rows for a picture that may take so many seconds of one processor: a sixth of them at most go to its sky,
 /// down to 128 rows.
@@ -36,13 +37,28 @@ int cloud_rows(double work_seconds);
 /// pictures of a film have one sky. Many threads may ask.
 class CloudPictures {
   public:
+    /// From its beginning on pictures have so many rows; until its end the flag ends the drawing of one by
+    /// Cancelled.
+    class Drawing {
+      public:
+        Drawing(CloudPictures& pictures, int rows, CancelFlag cancel);
+        ~Drawing();
+        Drawing(const Drawing&) = delete;
+        Drawing& operator=(const Drawing&) = delete;
+
+      private:
+        CloudPictures& pictures_;
+        const int rows_;
+    };
+
     std::shared_ptr<const SkyPicture> picture(const SkyLight& sky, const Clouds& clouds);
-    /// From the next picture on.
-    void set_rows(int rows);
 
   private:
+    void set(int rows, CancelFlag cancel);
+
     std::mutex mutex_;
     int rows_ = most_cloud_rows;
+    CancelFlag cancel_;
     SkyLight sky_;
     Clouds clouds_;
     int picture_rows_ = 0;

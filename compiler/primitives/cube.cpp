@@ -110,20 +110,20 @@ bool intersect(const Primitive&, const Ray& ray, const RayRange& range, Primitiv
 
 } // namespace
 
-constinit const PrimitiveTraits cube_traits = flat_row({
-    .box = box,
-    .ball = ball,
-    .support_point = support_point,
-    .convex_parts = convex_parts,
-    .inner_radius = inner_radius,
-    .keeps = keeps,
-    .mesh = mesh,
-    .facets = facets,
-    .solid = true,
-    .texture_point = texture_point,
-    .area = area,
-    .site = site,
-    .intersect = intersect,
-});
+constinit const PrimitiveTraits cube_traits = flat_row(
+    {
+        .box = box,
+        .ball = ball,
+        .support_point = support_point,
+        .inner_radius = inner_radius,
+        .keeps = keeps,
+        .mesh = mesh,
+        .solid = true,
+        .texture_point = texture_point,
+        .area = area,
+        .site = site,
+        .intersect = intersect,
+    },
+    {.convex_parts = convex_parts, .facets = facets});
 
 } // namespace graftal

@@ -40,12 +40,20 @@ std::vector<FacetCorners> facets_of_mesh(const Primitive& primitive);
 Vec3 centre_of_box(const Primitive& primitive);
 double exact_mesh_error(const Primitive& primitive, int fineness);
 
-/// A whole row of a primitive whose mesh is exact: its own columns, and where it has none those above.
-constexpr PrimitiveTraits flat_row(PrimitiveTraits own) {
-    if (!own.hull) own.hull = hull_of_mesh;
-    if (!own.convex_parts) own.convex_parts = triangles_of_mesh;
-    if (!own.facets) own.facets = facets_of_mesh;
-    if (!own.fixed_point) own.fixed_point = centre_of_box;
+/// Those of them that a row may replace.
+struct FlatColumns {
+    decltype(PrimitiveTraits::hull) hull = hull_of_mesh;
+    decltype(PrimitiveTraits::convex_parts) convex_parts = triangles_of_mesh;
+    decltype(PrimitiveTraits::facets) facets = facets_of_mesh;
+    decltype(PrimitiveTraits::fixed_point) fixed_point = centre_of_box;
+};
+
+/// A whole row of a primitive whose mesh is exact.
+constexpr PrimitiveTraits flat_row(PrimitiveTraits own, const FlatColumns& columns = {}) {
+    own.hull = columns.hull;
+    own.convex_parts = columns.convex_parts;
+    own.facets = columns.facets;
+    own.fixed_point = columns.fixed_point;
     own.mesh_error = exact_mesh_error;
     return own;
 }

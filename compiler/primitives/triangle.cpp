@@ -77,18 +77,19 @@ bool intersect(const Primitive&, const Ray& ray, const RayRange& range, Primitiv
 
 } // namespace
 
-constinit const PrimitiveTraits triangle_traits = flat_row({
-    .box = box,
-    .ball = ball,
-    .support_point = support_point,
-    .inner_radius = inner_radius,
-    .fixed_point = origin_of,
-    .keeps = keeps,
-    .mesh = mesh,
-    .texture_point = texture_point,
-    .area = area,
-    .site = site,
-    .intersect = intersect,
-});
+constinit const PrimitiveTraits triangle_traits = flat_row(
+    {
+        .box = box,
+        .ball = ball,
+        .support_point = support_point,
+        .inner_radius = inner_radius,
+        .keeps = keeps,
+        .mesh = mesh,
+        .texture_point = texture_point,
+        .area = area,
+        .site = site,
+        .intersect = intersect,
+    },
+    {.fixed_point = origin_of});
 
 } // namespace graftal

@@ -53,25 +53,25 @@ bool intersect_within(const Primitive& primitive, const Ray& ray, const RayRange
 constexpr PrimitiveTraits traits(PrimitiveArguments arguments = {},
                                  std::optional<Primitive> (*make)(std::span<const double>,
                                                                   std::string&) = nullptr) {
-    return flat_row({
-        .arguments = arguments,
-        .make = make,
-        .box = box,
-        .ball = ball,
-        .support_point = support_point,
-        .reach = reach,
-        .hull = hull,
-        .convex_parts = convex_parts,
-        .inner_radius = inner_radius,
-        .keeps = keeps,
-        .mesh = mesh,
-        .texture_point = texture_point,
-        .texture_triangle = texture_triangle,
-        .area = area,
-        .site = site,
-        .intersect = intersect,
-        .intersect_within = intersect_within,
-    });
+    return flat_row(
+        {
+            .arguments = arguments,
+            .make = make,
+            .box = box,
+            .ball = ball,
+            .support_point = support_point,
+            .reach = reach,
+            .inner_radius = inner_radius,
+            .keeps = keeps,
+            .mesh = mesh,
+            .texture_point = texture_point,
+            .texture_triangle = texture_triangle,
+            .area = area,
+            .site = site,
+            .intersect = intersect,
+            .intersect_within = intersect_within,
+        },
+        {.hull = hull, .convex_parts = convex_parts});
 }
 
 } // namespace triangle_mesh

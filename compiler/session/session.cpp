@@ -224,7 +224,7 @@ bool Session::need_viewed(const StageOptions& options, Compilation& compilation)
         if (!need_analysed(options, true, compilation)) return false;
         if (refuse_divergent(*analysed_.value(), compilation.diagnostics)) return false;
         viewed_.run(key_now(), analysed_.findings(), [&](const ViewKey& key, Diagnostics& findings) {
-            clouds_->set_rows(key.cloud_rows);
+            const CloudPictures::Drawing drawing(*clouds_, key.cloud_rows, control_.cancel);
             ++runs_.viewed;
             return StageClock(compilation.times).run("frame", [&] {
                 const std::optional<unsigned> steps = levels_of(*analysed_.value(), options.lower.steps);

@@ -54,6 +54,8 @@ void append_excerpt(std::string& out, const SourceMap& sources, Span span) {
                        std::string(width - 1, '~'));
 }
 
+} // namespace
+
 const char* name_of(Severity severity) {
     switch (severity) {
     case Severity::error:
@@ -65,8 +67,6 @@ const char* name_of(Severity severity) {
     }
     return "note";
 }
-
-} // namespace
 
 Diagnostic& Diagnostic::with_hint(std::string text) {
     hint = std::move(text);

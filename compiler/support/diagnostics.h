@@ -8,6 +8,8 @@
 namespace graftal {
 
 enum class Severity { error, warning, note };
+/// As messages say it: "error", "warning" or "note".
+const char* name_of(Severity severity);
 
 /// A second place that a diagnostic points at, e.g. "first defined here".
 struct Note {

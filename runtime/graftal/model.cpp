@@ -119,13 +119,17 @@ constexpr std::uint64_t most_points = 1'000'000'000;
 
 } // namespace
 
-std::string text_of(const std::vector<Message>& messages) {
+const char* name_of(Severity severity) {
     static constexpr const char* names[] = {"error", "warning", "note"};
+    return names[static_cast<std::size_t>(severity)];
+}
+
+std::string text_of(const std::vector<Message>& messages) {
     std::string text;
     for (const Message& message : messages) {
         if (!message.file.empty())
             text += fmt::format("{}:{}:{}: ", message.file, message.line, message.column);
-        text += fmt::format("{}: {}\n", names[static_cast<std::size_t>(message.severity)], message.text);
+        text += fmt::format("{}: {}\n", name_of(message.severity), message.text);
         if (!message.hint.empty()) text += fmt::format("  {}\n", message.hint);
     }
     return text;

@@ -31,6 +31,8 @@ struct Camera {
 };
 
 enum class Severity { error, warning, note };
+/// "error", "warning" or "note".
+GRAFTAL_API const char* name_of(Severity severity);
 
 /// One thing that is said about a model, or about the files and programs that it needs.
 struct Message {

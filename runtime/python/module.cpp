@@ -118,11 +118,7 @@ std::optional<Vector> vector_of(const std::optional<std::array<double, 3>>& v) {
 
 PYBIND11_MODULE(_graftal, module) {
     py::class_<Message>(module, "Message")
-        .def_property_readonly("severity",
-                               [](const Message& message) {
-                                   static constexpr const char* names[] = {"error", "warning", "note"};
-                                   return names[static_cast<std::size_t>(message.severity)];
-                               })
+        .def_property_readonly("severity", [](const Message& message) { return name_of(message.severity); })
         .def_readonly("file", &Message::file)
         .def_readonly("line", &Message::line)
         .def_readonly("column", &Message::column)

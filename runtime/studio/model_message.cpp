@@ -14,18 +14,6 @@ namespace graftal {
 
 namespace {
 
-const char* severity_name(Severity severity) {
-    switch (severity) {
-    case Severity::error:
-        return "error";
-    case Severity::warning:
-        return "warning";
-    case Severity::note:
-        break;
-    }
-    return "note";
-}
-
 void add_place(nlohmann::json& to, const Span& span, const SourceMap& sources) {
     if (!span.known()) return;
     const TextPositions positions(sources.text(span.file));
@@ -41,7 +29,7 @@ Span written(const Span& span, const SourceMap& sources) {
 
 nlohmann::json finding_json(const Diagnostic& finding, const SourceMap& sources) {
     const Span span = written(finding.span, sources);
-    nlohmann::json json{{"severity", severity_name(finding.severity)},
+    nlohmann::json json{{"severity", name_of(finding.severity)},
                         {"file", span.known() ? std::string(sources.name(span.file)) : ""},
                         {"text", finding.message},
                         {"hint", finding.hint}};

@@ -130,6 +130,17 @@ TEST(Clouds, AnOwnerDrawsAPictureOnceWhileItIsInUse) {
     EXPECT_TRUE(unused.expired()) << "the owner keeps no memory";
 }
 
+TEST(Clouds, AFlagEndsTheDrawingOfAPicture) {
+    CloudPictures pictures;
+    int asked = 0;
+    {
+        const CloudPictures::Drawing drawing(pictures, 128, CancelFlag([&] { return ++asked > 5; }));
+        EXPECT_THROW(pictures.picture(blue_sky(), clouds_of(0.4)), Cancelled);
+        EXPECT_EQ(asked, 6) << "once a row";
+    }
+    EXPECT_TRUE(pictures.picture(blue_sky(), clouds_of(0.4))) << "nobody asks a flag that is gone";
+}
+
 TEST(Clouds, LittleWorkMakesASmallSky) {
     EXPECT_EQ(cloud_rows(15), most_cloud_rows);
     EXPECT_EQ(cloud_rows(5), most_cloud_rows / 2);
@@ -137,7 +148,7 @@ TEST(Clouds, LittleWorkMakesASmallSky) {
     EXPECT_EQ(cloud_rows(0.01), 128);
     CloudPictures pictures;
     const auto whole = pictures.picture(blue_sky(), clouds_of(0.4));
-    pictures.set_rows(128);
+    const CloudPictures::Drawing drawing(pictures, 128, {});
     const auto small = pictures.picture(blue_sky(), clouds_of(0.4));
     EXPECT_EQ(small->width(), 256);
     EXPECT_EQ(pictures.picture(blue_sky(), clouds_of(0.4)), small);

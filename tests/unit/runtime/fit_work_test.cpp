@@ -222,8 +222,8 @@ TEST_F(FitWork, RaysGiveWayInMeshes) {
     EXPECT_LE(seconds * model.sampling.samples_a_pixel(), 1.5 * options.work_seconds);
 }
 
-// A part that is looked at in the world took as much as ten others, and counted as none: sixteen rays of a look
-// spent eleven times what it may.
+// A part that is looked at in the world took as much as ten others, and counted as none: sixteen rays of a
+// look spent eleven times what it may.
 TEST_F(FitWork, RaysGiveWayAmongFlatParts) {
     Graph graph = inner_cubes();
     Object flat{"flat", {}, {}, {}, {}};

@@ -166,6 +166,17 @@ void note_native(const PreparedView& prepared, std::string_view why, Compilation
                                  fmt::format("the processors draw this picture, not the GPU: {}", why));
 }
 
+/// The device that was asked for, else the first graphics card: null, and a status, where there is none.
+/// Nobody who asks for a card waits for the processors to play one.
+std::unique_ptr<Gpu> open_device(const std::optional<std::size_t>& device, Status& status) {
+    std::unique_ptr<Gpu> gpu = Gpu::open(device.value_or(0), status);
+    if (!gpu || device || !gpu->info().is_processor) return gpu;
+    status = Status::failure(
+        fmt::format("there is no graphics card ('--device 0' draws by {}, a driver that takes far longer)",
+                    gpu->info().name));
+    return nullptr;
+}
+
 std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& options,
                                Compilation& compilation) {
     const Stopwatch preparing;
@@ -178,7 +189,7 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
     std::string why;
     if (const std::optional<FlatModel> model = drawing.flat(why)) {
         Status status;
-        const std::unique_ptr<Gpu> gpu = Gpu::open(options.device, status);
+        const std::unique_ptr<Gpu> gpu = open_device(options.device, status);
         const double prepared_seconds = preparing.seconds();
         if (gpu) status = drawing.draw(*model, *gpu);
         if (status.ok() || cancel.raised()) {
@@ -193,7 +204,8 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
         why = "its kernel does not know " + why;
     }
     note_native(prepared, why, compilation);
-    const std::optional<NativeReport> drawn = trace_model(prepared, options, preparing, cancel, compilation);
+    std::optional<NativeReport> drawn = trace_model(prepared, options, preparing, cancel, compilation);
+    if (drawn) drawn->whole_seconds = preparing.seconds();
     return drawn ? std::optional(report_of(*drawn)) : std::nullopt;
 }
 

@@ -165,7 +165,7 @@ std::string in_words(const NativeReport& report, std::string_view device) {
     if (const std::optional<double> noise = report.rays.noise_255())
         text += fmt::format(", noise {:.2g} of 255", *noise);
     if (report.no_room_to_denoise) text += " (there was no memory to denoise it)";
-    text += device.empty() ? fmt::format(" in {:.2f} s", report.seconds)
+    text += device.empty() ? fmt::format(" in {:.2f} s", report.whole_seconds)
                            : fmt::format(" in {:.3g} s on {}", report.seconds, device);
     text += fmt::format(", {}", rays_text(report.rays, report.seconds));
     if (report.pictures > 1)
@@ -294,7 +294,10 @@ std::optional<NativeReport> render_natively(PictureSession& session, const Rende
     if (!prepare_model(session, stages, model, compilation)) return std::nullopt;
     std::optional<NativeReport> report =
         trace_model(model, options, preparing, session.control().cancel, compilation);
-    if (report) report->first_picture_seconds += before;
+    if (report) {
+        report->first_picture_seconds += before;
+        report->whole_seconds = whole.seconds();
+    }
     return report;
 }
 

@@ -17,6 +17,7 @@ extern const Engine native_engine;
 struct NativeReport {
     TraceStatistics rays;
     double seconds = 0;               ///< of tracing
+    double whole_seconds = 0;         ///< from the beginning of the call
     double first_picture_seconds = 0; ///< from the beginning of the call until a picture was there
     bool no_room_to_denoise = false;
     double samples_a_pixel = 0;       ///< of the picture that is there, all over

@@ -26,9 +26,10 @@ class GpuFaults : public CommandLine {
     }
 
     /// `fault`: FUNCTION:N:RESULT, or "".
-    RunResult draw(const std::string& fault, const std::string& words = "m.rifs --engine gpu") const {
+    RunResult draw(const std::string& fault, const std::string& words = "m.rifs") const {
         return shell("LD_LIBRARY_PATH=$PWD/../loader VULKAN_FAULT=" + fault +
-                     " timeout 100 \"$graftal\" render " + words + " --size 16x12 --samples 2 -o a.png");
+                     " timeout 100 \"$graftal\" render --engine gpu --device 0 " + words +
+                     " --size 16x12 --samples 2 -o a.png");
     }
 };
 
@@ -55,6 +56,14 @@ TEST_F(GpuFaults, AreNotesOnAPictureByTheProcessors) {
     }
 }
 
+TEST_F(GpuFaults, ADriverOfTheProcessorsIsNoCardUnlessAskedFor) {
+    const RunResult result =
+        shell("timeout 100 \"$graftal\" render --engine gpu m.rifs --size 16x12 -o a.png");
+    EXPECT_EQ(result.status, 0);
+    EXPECT_THAT(result.err,
+                HasSubstr("not the GPU: there is no graphics card ('--device 0' draws by llvmpipe"));
+}
+
 TEST_F(GpuFaults, WithoutALoaderOrADeviceTheProcessorsDrawToo) {
     const RunResult none = draw("vkCreateInstance:1:-9");
     EXPECT_EQ(none.status, 0);
@@ -70,10 +79,10 @@ TEST_F(GpuFaults, AMillionInstancesAreDrawnOrLeftToTheProcessors) {
     write("cells.inst",
           "canonical object cell { cube scale: 0.3 }\nobject many { scatter: cell count: 1000000 "
           "over: 0, 0, 1000, 1000 by: uniform }\n");
-    const RunResult drawn = draw("", "cells.inst --engine gpu --plain-light");
+    const RunResult drawn = draw("", "cells.inst --plain-light");
     EXPECT_EQ(drawn.status, 0) << drawn.err;
     EXPECT_THAT(drawn.err, Not(HasSubstr("not the GPU")));
-    const RunResult left = draw("", "cells.inst --engine gpu --plain-light --memory 200M");
+    const RunResult left = draw("", "cells.inst --plain-light --memory 200M");
     EXPECT_EQ(left.status, 0) << left.err;
     EXPECT_THAT(left.err, HasSubstr("its kernel does not know 1000000 instances within 200 MiB"));
 }

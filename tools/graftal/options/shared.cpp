@@ -317,7 +317,8 @@ void add_drawing(CLI::App& app, Options& options) {
         ->type_name(engine_names("|"))
         ->take_last();
     app.add_option("--device", options.render.device,
-                   "Graphics card of '--engine gpu', by its number in 'graftal version --json' (default 0)")
+                   "Graphics card of '--engine gpu', by its number in 'graftal version --json' (default: the "
+                   "first card)")
         ->type_name("N")
         ->take_last();
     app.add_option("--samples", options.render.samples,

@@ -22,6 +22,7 @@ class SharedFraming {
 
     /// All models are known. `camera` is the first frame's; `turning` says that it will go round.
     void settle(const CameraOverride& camera, ImageSize size, bool turning);
+    ImageSize size() const { return size_; }
 
     /// The view of a frame. Its camera has gone `turn_deg` of the options round the vertical axis through
     /// the middle of the bounds, towards its right. Multiples of 360 give equal views. Requires settle().

@@ -191,9 +191,17 @@ class Animation {
             if (seconds.size() == estimating_frames && missing.size() > estimating_frames &&
                 options_.on_estimate)
                 options_.on_estimate(
-                    {missing.size(), mean_of(seconds, sampled) * static_cast<double>(missing.size())});
+                    {missing.size(),
+                     mean_of(seconds, sampled) * static_cast<double>(missing.size()) + assembling_seconds()});
         }
         return true;
+    }
+
+    /// Other files than GIF are put together in no time.
+    double assembling_seconds() const {
+        if (kind_ != AnimationKind::gif || options_.only) return 0;
+        const ImageSize size = framing_->size();
+        return static_cast<double>(options_.frames) * size.width * size.height / gif_pixels_a_second;
     }
 
     /// A film whose models change makes some of them once more for its samples: a short one is not worth

@@ -39,7 +39,7 @@ struct MeasuredAnimation {
 /// An estimate after the first few frames.
 struct AnimationEstimate {
     std::size_t frames = 0; ///< to be drawn
-    double seconds = 0;     ///< for them, with the first ones
+    double seconds = 0;     ///< for them, with the first ones, and for putting all together
 };
 
 struct AnimateOptions {

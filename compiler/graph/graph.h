@@ -27,8 +27,8 @@
 // Combined objects. An object may also be the intersection of its instances, or a difference: the first one
 // less all others. An instance of a combined object is an *operand*: a solid, the union of all that is drawn
 // of its master, where that lies in space (planes are half spaces, below). Combined objects lie in no cycle,
-// and have bounds. Where levels end at one without a terminal, it combines those of its operands that end,
-// and is nothing where the first does not.
+// and have bounds. Where levels end at one without a terminal, it combines its ending operands, unless its
+// first operand does not end.
 //
 // Tints compose along a path from the root by PathTint, parent in front. The material nearest to the
 // primitive wins.

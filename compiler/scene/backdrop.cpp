@@ -27,22 +27,26 @@ class Rolls {
     std::uint64_t count_ = 0;
 };
 
+/// The colour at the end of a path. One that does not end is as bright as the terminal that stands there.
 Rgb colour_of_path(const Graph& graph, Rolls& rolls) {
     PathTint tint;
     Rgb base = Material{}.rgb;
     ObjectId at = graph.root;
-    for (int step = 0; step < path_length; ++step) {
+    for (int step = 0; step < 2 * path_length; ++step) {
         const Object& object = graph.objects[at];
-        if (object.packed) {
-            const std::size_t item = rolls.next(object.packed.item_count());
-            if (const auto material = object.packed.material_of_item(item))
-                base = graph.materials[*material].rgb;
+        const Instance* next = step >= path_length && object.terminal ? &*object.terminal : nullptr;
+        if (!next) {
+            if (object.packed) {
+                const std::size_t item = rolls.next(object.packed.item_count());
+                if (const auto material = object.packed.material_of_item(item))
+                    base = graph.materials[*material].rgb;
+            }
+            if (object.primitive || object.instances.empty()) break;
+            next = &object.instances[rolls.next(object.instances.size())];
         }
-        if (object.primitive || object.instances.empty()) break;
-        const Instance& instance = object.instances[rolls.next(object.instances.size())];
-        tint = tint * PathTint(instance.tint);
-        if (instance.material) base = graph.materials[*instance.material].rgb;
-        at = instance.master;
+        tint = tint * PathTint(next->tint);
+        if (next->material) base = graph.materials[*next->material].rgb;
+        at = next->master;
     }
     return tint.over(base);
 }

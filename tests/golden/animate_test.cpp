@@ -359,7 +359,8 @@ TEST_F(Animate, VideosPlay) {
 TEST_F(Animate, ItsEstimateCountsPuttingAGifTogether) {
     const auto estimate = [&](const std::string& output) {
         return shell("timeout -s INT 10 \"$graftal\" animate " + weed +
-                     "--frames 100 --size 1280x720 --antialias off --plain-light --engine native -o " + output)
+                     "--frames 100 --size 1280x720 --antialias off --plain-light --engine native -o " +
+                     output)
             .err;
     };
     EXPECT_THAT(estimate("a.gif"), testing::ContainsRegex("100 frames take about [0-9]+ min"));

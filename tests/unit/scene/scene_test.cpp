@@ -398,6 +398,13 @@ TEST(SampleColours, FollowTintsOnCyclesAndTakeTheNearestMaterial) {
     cycle.root = cycle.add(std::move(self));
     for (const Rgb& colour : sample_colours(cycle))
         EXPECT_NEAR(colour.g, 0.5, 1e-12);
+
+    // The limit of a green plant had the backdrop of grey ones: its terminal alone is green.
+    cycle.materials = {red};
+    cycle.objects[0].instances[0].tint = {};
+    cycle.objects[0].terminal = Instance{.master = cycle.primitive(PrimitiveKind::sphere), .material = 0};
+    for (const Rgb& colour : sample_colours(cycle))
+        EXPECT_EQ(colour, Rgb(1, 0, 0));
 }
 
 TEST(ShapedSize, SuitsTheModelAndHasAsManyPixels) {

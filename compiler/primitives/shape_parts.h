@@ -40,7 +40,7 @@ std::vector<FacetCorners> facets_of_mesh(const Primitive& primitive);
 Vec3 centre_of_box(const Primitive& primitive);
 double exact_mesh_error(const Primitive& primitive, int fineness);
 
-/// Those of them that a row may replace.
+/// Columns of these that a row may replace.
 struct FlatColumns {
     decltype(PrimitiveTraits::hull) hull = hull_of_mesh;
     decltype(PrimitiveTraits::convex_parts) convex_parts = triangles_of_mesh;

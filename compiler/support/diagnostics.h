@@ -8,7 +8,7 @@
 namespace graftal {
 
 enum class Severity { error, warning, note };
-/// As messages say it: "error", "warning" or "note".
+/// The word that messages begin with: "error", "warning" or "note".
 const char* name_of(Severity severity);
 
 /// A second place that a diagnostic points at, e.g. "first defined here".

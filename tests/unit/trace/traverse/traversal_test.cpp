@@ -303,7 +303,10 @@ TEST(Traversal, WorkCountsWhatIsLookedAtInTheWorld) {
     Traversal traversal(*model);
     for (int i = 0; i < 100; ++i)
         traversal.meets_any({{0.05 * i, 0.04 * i, 10}, {0, 0, -1}}, {});
-    EXPECT_GT(traversal.work(), 10 * traversal.visits()) << "thirty children are looked at, few gone into";
+    constexpr std::uint64_t looked_at = 30 * RayWork::crushed;
+    EXPECT_GE(traversal.work(), 100 * looked_at) << "thirty children for each ray";
+    EXPECT_GE(traversal.visits(), 100 * looked_at / RayWork::part)
+        << "they are of the visits that a ray may make";
 }
 
 TEST(Traversal, WorkCountsThePathToWhatIsSeen) {

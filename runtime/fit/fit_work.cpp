@@ -166,13 +166,16 @@ class Fitting {
     }
 
     Sampling affordable(const Price& price) const {
-        const auto within = [&](double seconds) {
-            return affordable_sampling(ask_.wanted, price.known ? std::max(seconds - price.fixed, 0.0) /
-                                                                      std::max(price.sample, 1e-12)
-                                                                : 0);
+        const auto within = [&](const Sampling& wanted) {
+            const double seconds = allowed() - denoising_seconds(wanted) - price.fixed;
+            return affordable_sampling(
+                wanted, price.known ? std::max(seconds, 0.0) / std::max(price.sample, 1e-12) : 0);
         };
-        const Sampling denoised = within(allowed() - denoising_seconds(ask_.wanted));
-        return denoised.denoise || !ask_.wanted.denoise ? denoised : within(allowed());
+        const Sampling denoised = within(ask_.wanted);
+        if (denoised.denoise || !ask_.wanted.denoise) return denoised;
+        Sampling noisy = ask_.wanted;
+        noisy.denoise = false;
+        return within(noisy);
     }
 
     /// A model of this error, whose price may be known, or of the smallest larger one for which the memory

@@ -280,30 +280,39 @@ TEST_F(FitWork, SamplesGoBeforePartsGrowLarge) {
 
 // 3 seconds in place of 5.6 turned 0.5 pixels into 19.22: rays of a first look that were given up counted as
 // if they would have taken all the work that there is.
-// Where the work held too few samples to denoise, but enough without the denoiser's own price, no sampling
-// fitted: the pound sign came 28.8 px coarse at two seconds, and 0.5 px at one.
 TEST_F(FitWork, LessWorkHasNoCliffs) {
     DetailOptions options;
     options.steps = 6;
     options.error_px = 0.05;
     view_.size = {160, 120};
+    wanted_ = {.most_samples = 64};
     const auto fits = [](double) { return false; };
-    for (const bool denoise : {false, true}) {
-        wanted_ = {.most_samples = 64, .denoise = denoise};
-        options.work_seconds = DetailOptions().work_seconds;
-        const double whole_seconds = fitted(inner_cubes(), options, fits).whole_seconds;
-        double last_error_px = options.error_px, last_samples = 64;
-        for (double share = 1.5; share > 0.01; share *= 0.6) {
-            options.work_seconds = share * whole_seconds;
-            const FittedModel model = fitted(inner_cubes(), options, fits);
-            const double samples = model.sampling.samples_a_pixel();
-            EXPECT_FALSE(model.rays_cut) << share;
-            EXPECT_LE(model.error_px, 2.5 * last_error_px) << share;
-            EXPECT_GE(samples, last_samples / 4.001) << share;
-            EXPECT_LE(model.seconds + model.tried_seconds, 1.2 * options.work_seconds) << share;
-            last_error_px = std::max(model.error_px, options.error_px);
-            last_samples = samples;
-        }
+    const double whole_seconds = fitted(inner_cubes(), options, fits).whole_seconds;
+    double last_error_px = options.error_px, last_samples = 64;
+    for (double share = 1.5; share > 0.01; share *= 0.6) {
+        options.work_seconds = share * whole_seconds;
+        const FittedModel model = fitted(inner_cubes(), options, fits);
+        const double samples = model.sampling.samples_a_pixel();
+        EXPECT_FALSE(model.rays_cut) << share;
+        EXPECT_LE(model.error_px, 2.5 * last_error_px) << share;
+        EXPECT_GE(samples, last_samples / 4.001) << share;
+        EXPECT_LE(model.seconds + model.tried_seconds, 1.2 * options.work_seconds) << share;
+        last_error_px = std::max(model.error_px, options.error_px);
+        last_samples = samples;
+    }
+}
+
+// Where the work held too few samples to denoise, but enough without the denoiser's own price, no sampling
+// fitted: the pound sign came 28.8 px coarse at two seconds, and 0.5 px at one.
+TEST_F(FitWork, ThePriceOfTheDenoiserMakesNoCliff) {
+    wanted_ = {.most_samples = 64, .denoise = true};
+    view_.size = {640, 360};
+    DetailOptions options;
+    for (double work_seconds = 4; work_seconds > 0.2; work_seconds *= 0.85) {
+        options.work_seconds = work_seconds;
+        const FittedModel model = fitted(0, options);
+        EXPECT_LE(model.error_px, 2 * options.error_px) << work_seconds;
+        EXPECT_LE(model.seconds + model.tried_seconds, 1.2 * work_seconds) << work_seconds;
     }
 }
 

@@ -51,7 +51,7 @@ TEST_F(DenoisedPictures, SparseSamplesFillThePicture) {
     const auto drawn = [&](const std::string& denoise) {
         const RunResult result =
             graftal("render " + source_path("scenes/" + scene) +
-                    " --engine native --size 160x90 --work 0.5 --no-progressive -o a.png "
+                    " --engine native --size 160x90 --work 0.65 --no-progressive -o a.png "
                     "--denoise " +
                     denoise);
         EXPECT_EQ(result.status, 0) << result.err;

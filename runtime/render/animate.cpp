@@ -197,7 +197,7 @@ class Animation {
         return true;
     }
 
-    /// Other files than GIF are put together in no time.
+    /// Seconds for putting the frames together, which counts beside drawing them for a GIF alone.
     double assembling_seconds() const {
         if (kind_ != AnimationKind::gif || options_.only) return 0;
         const ImageSize size = framing_->size();

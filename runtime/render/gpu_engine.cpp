@@ -42,13 +42,15 @@ class GpuDrawing {
 
     /// The model for the kernel; nothing, and `why`, where it lacks something.
     std::optional<FlatModel> flat(std::string& why) const {
+        std::optional<FlatModel> model;
         if (options_.fit)
             why = "a fit that is known already";
         else
-            return flat_model({*prepared_.prepared, view_, plan_.detail, prepared_.textures,
-                               limits_of(*prepared_.prepared, view_, options_), plan_.wanted},
-                              why);
-        return std::nullopt;
+            model = flat_model({*prepared_.prepared, view_, plan_.detail, prepared_.textures,
+                                limits_of(*prepared_.prepared, view_, options_), plan_.wanted},
+                               why);
+        if (!model) why = "its kernel does not know " + why;
+        return model;
     }
 
     Status draw(const FlatModel& model, Gpu& gpu) {
@@ -166,15 +168,14 @@ void note_native(const PreparedView& prepared, std::string_view why, Compilation
                                  fmt::format("the processors draw this picture, not the GPU: {}", why));
 }
 
-/// The device that was asked for, else the first graphics card: null, and a status, where there is none.
-/// Nobody who asks for a card waits for the processors to play one.
-std::unique_ptr<Gpu> open_device(const std::optional<std::size_t>& device, Status& status) {
-    std::unique_ptr<Gpu> gpu = Gpu::open(device.value_or(0), status);
-    if (!gpu || device || !gpu->info().is_processor) return gpu;
-    status = Status::failure(
-        fmt::format("there is no graphics card ('--device 0' draws by {}, a driver that takes far longer)",
-                    gpu->info().name));
-    return nullptr;
+/// Why there is no graphics card; empty where there is one. Nobody who asks for a card waits for the
+/// processors to play one.
+std::string why_no_card() {
+    std::string why;
+    const std::vector<GpuInfo> devices = gpu_devices(&why);
+    if (devices.empty() || !devices.front().is_processor) return why;
+    return fmt::format("there is no graphics card ('--device 0' draws by {}, a driver that takes far longer)",
+                       devices.front().name);
 }
 
 std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& options,
@@ -186,10 +187,12 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
     if (!compilation.status.ok()) return std::nullopt;
     const CancelFlag cancel = session.control().cancel;
     GpuDrawing drawing(prepared, options, cancel);
-    std::string why;
-    if (const std::optional<FlatModel> model = drawing.flat(why)) {
+    std::string why = options.device ? "" : why_no_card();
+    std::optional<FlatModel> model;
+    if (why.empty()) model = drawing.flat(why);
+    if (model) {
         Status status;
-        const std::unique_ptr<Gpu> gpu = open_device(options.device, status);
+        const std::unique_ptr<Gpu> gpu = Gpu::open(options.device.value_or(0), status);
         const double prepared_seconds = preparing.seconds();
         if (gpu) status = drawing.draw(*model, *gpu);
         if (status.ok() || cancel.raised()) {
@@ -200,8 +203,6 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
             return report_of(drawing.report(), gpu->info().name);
         }
         why = status.message();
-    } else {
-        why = "its kernel does not know " + why;
     }
     note_native(prepared, why, compilation);
     std::optional<NativeReport> drawn = trace_model(prepared, options, preparing, cancel, compilation);
@@ -220,8 +221,7 @@ bool has_gpu() {
                 return std::filesystem::exists(node, none);
             }))
             return false;
-        const std::vector<GpuInfo> devices = gpu_devices();
-        return !devices.empty() && !devices.front().is_processor;
+        return why_no_card().empty();
     }();
     return found;
 }

@@ -59,9 +59,8 @@ void compare(Traversal& together, Traversal& alone, const Packet& rays, int& hit
 }
 
 TEST(Packets, MeetWhatTheirRaysMeetAloneInScenes) {
-    for (const char* path : {"scenes/abop/fig1_25.lsys", "scenes/hart/elm.inst", "scenes/plants/autumn.inst",
-                             "scenes/plants/pine.inst", "scenes/plants/grass.inst",
-                             "scenes/ifs/menger_sponge.rifs", "tests/bench/models/turned_pound_sign.inst"}) {
+    for (const char* path : {"scenes/hart/pound_sign.rifs", "scenes/ifs/menger_sponge.rifs",
+                             "scenes/ifs/sierpinski_tetrahedron.rifs"}) {
         SCOPED_TRACE(path);
         const auto model = load(path);
         ASSERT_TRUE(model);

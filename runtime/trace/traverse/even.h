@@ -2,7 +2,7 @@
 
 // Traversal of models whose parts are only scaled evenly and moved, and drawn no wider than they are: the
 // general way (kernel.h) without what such models never need. The ray has one direction in all
-// frames; a frame's place is a scale and an offset. Only traversal.cpp includes it.
+// frames; a frame's place is a scale and an offset. Only traversal.cpp and packets.cpp include it.
 
 #include "compiler/primitives/passage.h"
 #include "runtime/trace/traverse/even_places.h"

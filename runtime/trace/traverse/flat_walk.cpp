@@ -189,7 +189,6 @@ void Traversal::keep_flat_way(std::uint32_t frame_number) {
 }
 
 void Traversal::meet_flat(std::uint32_t frame_number, std::uint32_t number, const RayRange& range, bool any) {
-    met_flat_ = true;
     look_at_flat(1);
     const Frame& frame = frames_[frame_number];
     FlatPart start = flat_child(frame.world_from_node, number, frame.steps, frame.cut);

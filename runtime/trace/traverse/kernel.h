@@ -25,9 +25,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
     GRAFTAL_INLINE Kernel(Traversal& traversal, const TraceModel& traced, const RayRange& asked)
         : Places{traversal, traced, asked} {}
 
-    /// `from`: an entry of a frame that is ready, from which on the ray is to go (Traversal::resume()); null:
-    /// from the world on.
-    GRAFTAL_INLINE bool run(const Ray& ray, const Entry* from) {
+    GRAFTAL_INLINE bool run(const Ray& ray) {
         Entry entry;
         begin(ray);
         constexpr double before_all = -std::numeric_limits<double>::infinity();
@@ -36,13 +34,9 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
             enough = model.near_enough(ray, near_enough_share);
             plenty = model.near_enough(ray, plenty_share);
         }
-        if (from) {
-            entry = *from;
-        } else {
-            self.best_.t = range.most;
-            self.visit_limit_ = self.visits_ + self.visits_allowed();
-            if (!enter_world(ray)) return false;
-        }
+        self.best_.t = range.most;
+        self.visit_limit_ = self.visits_ + self.visits_allowed();
+        if (!enter_world(ray)) return false;
         for (bool more = true; more || pop(later.first, entry);) {
             if (entry.entry & BoxNode::inner) {
                 more = go_on_in_boxes(entry);

@@ -1,30 +1,25 @@
 #pragma once
 
-// Eight rays at once: neighbours of a picture mostly look into the same parts. Each ray is taken into frames
-// and meets leaves by the very operations of the way alone, in a lane of its own. Only the order differs in
-// which parts are looked into. That matters only where two hits are all but equally near: such a ray goes
-// again, alone. So a packet gives what its rays give one by one, to the last bit. This file has the common
-// part of all packets: the boxes, the stack, and rays that leave the others. The ways of rays into frames
-// are in packet_even.h and packet_turned.h. Only packets.cpp includes these.
+// Eight rays at once, through an even model: neighbours of a picture mostly look into the same parts. Each
+// ray is taken into frames and meets leaves by the very operations of the way alone (even.h), in a lane of
+// its own. Only the order differs in which parts are looked into. That matters only where two hits are all
+// but equally near: such a ray goes again, alone. So a packet gives what its rays give one by one, to the
+// last bit. Only packets.cpp includes this.
 
 #include <bit>
 #include <cstring>
 #include <span>
 #include <utility>
 
+#include "runtime/trace/traverse/even.h"
 #include "runtime/trace/traverse/packet_room.h"
 #include "runtime/trace/traverse/ray_range.h"
 
 namespace graftal {
 
-/// `Packet`: what is derived from this. `PlacesOf` says which parts are looked into, `FrameOf` is the
-/// packet's own frame.
-template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
-struct Traversal::PacketWalk : PlacesOf {
+template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
     using Entry = PacketRoom::Entry;
-    using Frame = FrameOf;
-    using PlacesOf::model;
-    using PlacesOf::self;
+    using Frame = PacketRoom::Frame;
 
     /// Rays on their way into an entry.
     struct Going {
@@ -39,15 +34,20 @@ struct Traversal::PacketWalk : PlacesOf {
 
     PacketRoom& room;
     std::vector<Frame>& frames; ///< the room's
-    Double8 least, best;        ///< of t
-    std::uint32_t found = 0;    ///< rays that have met something
-    std::uint32_t tied = 0;     ///< and something else about as near
-    std::uint32_t lost = 0;     ///< rays that are to go alone, whatever they meet
+    // In every frame:
+    Double8 direction[3], inverse[3];
+    Float8 reciprocal[3];
+    Float8 least_reciprocal[3], most_reciprocal[3]; ///< of all rays
+    std::size_t sides[3];                           ///< of boxes, where rays go in
+    Double8 least, best;                            ///< of t
+    std::uint32_t found = 0;                        ///< rays that have met something
+    std::uint32_t tied = 0;                         ///< and something else about as near
+    std::uint32_t lost = 0;                         ///< rays that are to go alone, whatever they meet
     std::uint64_t visits = 0;
     std::span<const Ray> world_rays;
 
-    GRAFTAL_INLINE PacketWalk(Traversal& traversal, std::vector<Frame>& packet_frames)
-        : PlacesOf{traversal, traversal.model_, {}}, room(*traversal.packet_), frames(packet_frames) {}
+    GRAFTAL_INLINE explicit Packet(Traversal& traversal)
+        : EvenPlaces{traversal, traversal.model_, {}}, room(*traversal.packet_), frames(room.frames) {}
 
     /// Rays that go alone: as few have little in common.
     static constexpr int few = 2;
@@ -67,7 +67,7 @@ struct Traversal::PacketWalk : PlacesOf {
         }
         const std::uint32_t all = (1u << rays.size()) - 1;
         Going going{Float8{}, 0, 0, 0, all, Entry::no_box};
-        const Next first = packet().enter_world(going);
+        const Next first = enter_world(going);
         if (first == Next::alone) lost = all;
         if (first != Next::on) return;
         for (bool more = true; more || pop(going);) {
@@ -84,9 +84,6 @@ struct Traversal::PacketWalk : PlacesOf {
     }
 
     GRAFTAL_INLINE std::uint32_t to_go_alone() const { return tied | lost; }
-
-    GRAFTAL_INLINE Packet& packet() { return static_cast<Packet&>(*this); }
-    GRAFTAL_INLINE const Packet& packet() const { return static_cast<const Packet&>(*this); }
 
     static GRAFTAL_INLINE double of(const Double8& lanes, int lane) { return lanes.half[lane / 4][lane % 4]; }
 
@@ -157,20 +154,6 @@ struct Traversal::PacketWalk : PlacesOf {
             node.entry[lane] = packed.first + packed.offset[lane];
     }
 
-    /// Sides of a box as all rays meet them on an axis: where they go in, and where they go out.
-    struct Slab {
-        Float8 in, out;
-    };
-    /// `near_in`, `near_out`: the origins as these sides see them.
-    static GRAFTAL_INLINE Slab slab_of(float side_in, float side_out, const Float8& near_in,
-                                       const Float8& near_out, const Float8& reciprocal) {
-        return {(spread<instructions>(side_in) - near_in) * reciprocal,
-                (spread<instructions>(side_out) - near_out) * reciprocal};
-    }
-    static GRAFTAL_INLINE Slab sorted(const Slab& slab, const Float8& reciprocal) {
-        return {reciprocal < 0 ? slab.out : slab.in, reciprocal < 0 ? slab.in : slab.out};
-    }
-
     /// Where rays enter the box of an entry, as test_boxes() has it.
     GRAFTAL_INLINE Float8 at_box(const Entry& entry) const {
         if (entry.box == Entry::no_box) return Float8{};
@@ -178,22 +161,15 @@ struct Traversal::PacketWalk : PlacesOf {
         const std::uint32_t number = (entry.box & ~Entry::packed) / 8, child = entry.box % 8;
         Float8 enters = frame.least;
         for (int axis = 0; axis < 3; ++axis) {
-            const std::size_t in = packet().side_in(frame, axis);
-            const bool mixed = packet().is_mixed(frame, axis);
-            const auto side = [&](std::size_t of_two) GRAFTAL_INLINED_LAMBDA {
-                if (!(entry.box & Entry::packed)) return side_of(model.boxes[number], of_two, axis)[child];
+            float side;
+            if (entry.box & Entry::packed) {
                 const PackedNode& node = model.packed_boxes[number];
                 const auto i = static_cast<std::size_t>(axis);
-                return node.origin[i] + static_cast<float>(node.side[of_two][i][child]) * node.step[i];
-            };
-            const Float8& reciprocal = packet().reciprocal_of(frame, axis);
-            Float8 at = (spread<instructions>(side(in)) - packet().near_of(frame, in, axis)) * reciprocal;
-            if (mixed)
-                at = reciprocal < 0
-                         ? (spread<instructions>(side(1 - in)) - packet().near_of(frame, 1 - in, axis)) *
-                               reciprocal
-                         : at;
-            enters = greater(enters, at);
+                side = node.origin[i] + static_cast<float>(node.side[sides[axis]][i][child]) * node.step[i];
+            } else {
+                side = side_of(model.boxes[number], sides[axis], axis)[child];
+            }
+            enters = greater(enters, (spread<instructions>(side) - frame.near[axis]) * reciprocal[axis]);
         }
         return enters;
     }
@@ -217,16 +193,9 @@ struct Traversal::PacketWalk : PlacesOf {
         Frame& frame = frames[frame_number];
         const Float8 first_at = frame.least, most = most_in(frame);
         const float *in[3], *out[3];
-        Float8 near_in[3], near_out[3], reciprocal[3];
-        bool mixed = false;
         for (int axis = 0; axis < 3; ++axis) {
-            const std::size_t side = packet().side_in(frame, axis);
-            in[axis] = side_of(node, side, axis);
-            out[axis] = side_of(node, 1 - side, axis);
-            near_in[axis] = packet().near_of(frame, side, axis);
-            near_out[axis] = packet().near_of(frame, 1 - side, axis);
-            reciprocal[axis] = packet().reciprocal_of(frame, axis);
-            mixed = mixed || packet().is_mixed(frame, axis);
+            in[axis] = side_of(node, sides[axis], axis);
+            out[axis] = side_of(node, 1 - sides[axis], axis);
         }
         const int lead = std::countr_zero(mask);
         Entry* const first = room.reserve(8);
@@ -236,11 +205,10 @@ struct Traversal::PacketWalk : PlacesOf {
             const auto child = static_cast<std::size_t>(std::countr_zero(left));
             Float8 enters = first_at, leaves = most;
             for (int axis = 0; axis < 3; ++axis) {
-                Slab slab = slab_of(in[axis][child], out[axis][child], near_in[axis], near_out[axis],
-                                    reciprocal[axis]);
-                if (mixed && packet().is_mixed(frame, axis)) slab = sorted(slab, reciprocal[axis]);
-                enters = greater(enters, slab.in);
-                leaves = lesser(leaves, slab.out);
+                enters = greater(enters, (spread<instructions>(in[axis][child]) - frame.near[axis]) *
+                                             reciprocal[axis]);
+                leaves = lesser(leaves, (spread<instructions>(out[axis][child]) - frame.near[axis]) *
+                                            reciprocal[axis]);
             }
             const std::uint32_t meeting = bits_of<instructions>(enters <= leaves) & mask;
             if (meeting == 0) continue;
@@ -275,13 +243,10 @@ struct Traversal::PacketWalk : PlacesOf {
         Float8 enters = spread<instructions>(frame.first_least);
         Float8 leaves = spread<instructions>(greatest<instructions>(most, mask));
         for (int axis = 0; axis < 3; ++axis) {
-            if (packet().is_mixed(frame, axis)) continue;
-            const std::size_t in = packet().side_in(frame, axis);
-            const Float8 from = node.side[in][axis] - spread<instructions>(packet().extreme_in(frame, axis)),
-                         to = node.side[1 - in][axis] -
-                              spread<instructions>(packet().extreme_out(frame, axis));
-            const Float8 low = packet().least_reciprocal_of(frame, axis),
-                         high = packet().most_reciprocal_of(frame, axis);
+            const std::size_t in = sides[axis], out = 1 - in;
+            const Float8 from = node.side[in][axis] - spread<instructions>(frame.extreme[out][axis]),
+                         to = node.side[out][axis] - spread<instructions>(frame.extreme[in][axis]);
+            const Float8 low = least_reciprocal[axis], high = most_reciprocal[axis];
             enters = greater(enters, lesser(from * low, from * high));
             leaves = lesser(leaves, greater(to * low, to * high));
         }
@@ -290,21 +255,20 @@ struct Traversal::PacketWalk : PlacesOf {
 
     /// Whether so few rays go there that each goes by itself. A leaf is not worth the way there.
     GRAFTAL_INLINE bool is_left_alone(const Going& going) const {
-        return std::popcount(going.mask) <= few &&
-               (going.entry & BoxNode::inner || !packet().meets_together(going));
+        return std::popcount(going.mask) <= few && (going.entry & BoxNode::inner || !meets_together(going));
     }
 
     GRAFTAL_INLINE Next go_together(Going& going) {
         if (going.entry & BoxNode::inner) return test_boxes(going);
-        return LeafGroup::is(going.entry) ? meet_group(going) : packet().enter(going);
+        return LeafGroup::is(going.entry) ? meet_group(going) : enter(going);
     }
 
     /// The leaves of a group, one after the other.
     GRAFTAL_INLINE Next meet_group(Going& going) {
-        if (!packet().meets_together(going)) return Next::alone;
+        if (!meets_together(going)) return Next::alone;
         const LeafGroup group(going.entry);
         for (going.entry = group.first; going.entry < group.first + group.count; ++going.entry)
-            packet().enter(going);
+            enter(going);
         return Next::end;
     }
 
@@ -322,7 +286,7 @@ struct Traversal::PacketWalk : PlacesOf {
     }
 
     /// Readies a frame: its rays begin where they are taken into it.
-    GRAFTAL_INLINE void ready_rays(Frame& frame, const Float8 (&origin)[3], std::uint32_t mask) const {
+    GRAFTAL_INLINE void ready_rays(Frame& frame, std::uint32_t mask) const {
         Double8 from;
         for (int i = 0; i < 2; ++i)
             from.half[i] = (least.half[i] - frame.base.half[i]) * frame.speed.half[i];
@@ -330,8 +294,9 @@ struct Traversal::PacketWalk : PlacesOf {
         frame.hits_then = UINT32_MAX;
         frame.first_least = smallest<instructions>(frame.least, mask);
         for (int axis = 0; axis < 3; ++axis) {
-            frame.extreme[0][axis] = smallest<instructions>(origin[axis], mask);
-            frame.extreme[1][axis] = greatest<instructions>(origin[axis], mask);
+            frame.near[axis] = floats_of(frame.origin[axis]);
+            frame.extreme[0][axis] = smallest<instructions>(frame.near[axis], mask);
+            frame.extreme[1][axis] = greatest<instructions>(frame.near[axis], mask);
         }
     }
 
@@ -350,17 +315,15 @@ struct Traversal::PacketWalk : PlacesOf {
         self.best_.found = false;
         self.ray_ = world_rays[static_cast<std::size_t>(lane)];
         self.visit_limit_ = self.visits_ + most_visits;
-        self.met_flat_ = false;
         const std::uint64_t visits_before = self.visits_;
-        const bool met = packet().resume(going, lane, {of(least, lane), before});
+        const bool met = resume(going, lane, {of(least, lane), before});
         visits += self.visits_ - visits_before;
         if (self.hurries_) { // the ray is not given up yet
             self.hurries_ = false;
             --self.given_up_;
         }
         const std::uint32_t bit = 1u << lane;
-        if (self.met_flat_) lost |= bit; // its flat hits depend on those before
-        if (!met || self.met_flat_) return;
+        if (!met) return;
         if (before < INFINITY && !(self.best_.t < before - slack)) {
             tied |= bit;
             return;
@@ -392,6 +355,117 @@ struct Traversal::PacketWalk : PlacesOf {
             room.ways.push_back(frames[i].edge);
     }
 
+    GRAFTAL_INLINE bool meets_together(const Going& going) const {
+        return LeafGroup::is(going.entry) || model.even_parts[going.entry].kind != EvenPart::Kind::node;
+    }
+
+    /// Brings all rays to the box of the model. They are to go alone if they do not go to the same sides of
+    /// boxes, or along some.
+    GRAFTAL_INLINE Next enter_world(Going& going) {
+        Frame& frame = frames[0];
+        Double8 origin[3];
+        spread_rays(origin, direction);
+        const Box box = enlarged(model.edges.front().box, Vec3(0.0));
+        std::uint32_t parallel = 0, inside = 0;
+        for (int i = 0; i < 2; ++i) {
+            const Double4 speed =
+                power_below(largest_of(direction[0].half[i], direction[1].half[i], direction[2].half[i]));
+            const Double4 unit = inverse_power(speed);
+            Double4 from = least.half[i] * speed, to = best.half[i] * speed;
+            for (int axis = 0; axis < 3; ++axis) {
+                direction[axis].half[i] = direction[axis].half[i] * unit;
+                const Double4 d = direction[axis].half[i];
+                const Double4 over = 1 / d;
+                inverse[axis].half[i] = over;
+                parallel |= bits_of<instructions>(size_of(d) < splat(parallel_to_plane));
+                const Double4 a = (splat(box.min[axis]) - origin[axis].half[i]) * over,
+                              b = (splat(box.max[axis]) - origin[axis].half[i]) * over;
+                const Double4 in = b < a ? b : a, out = a < b ? b : a;
+                from = from < in ? in : from;
+                to = out < to ? out : to;
+            }
+            inside |= bits_of<instructions>(from <= to) << (4 * i);
+            for (int axis = 0; axis < 3; ++axis)
+                frame.origin[axis].half[i] = origin[axis].half[i] + from * direction[axis].half[i];
+            frame.base.half[i] = from * unit;
+            frame.unit.half[i] = unit;
+            frame.speed.half[i] = speed;
+        }
+        if (parallel != 0) return Next::alone;
+        for (int axis = 0; axis < 3; ++axis) {
+            const Float8 d = floats_of(direction[axis]), tiny = spread<instructions>(1e-18f);
+            reciprocal[axis] = 1 / ((d < 0 ? -d : d) > tiny ? d : tiny);
+            const std::uint32_t negative = bits_of<instructions>(reciprocal[axis] < 0);
+            if (negative != 0 && negative != 0xff) return Next::alone;
+            sides[axis] = negative != 0 ? 1 : 0;
+            least_reciprocal[axis] = spread<instructions>(smallest<instructions>(reciprocal[axis], 0xff));
+            most_reciprocal[axis] = spread<instructions>(greatest<instructions>(reciprocal[axis], 0xff));
+        }
+        frame.hits_then = UINT32_MAX;
+        place_world(frame);
+        going.mask &= inside;
+        return going.mask != 0 ? Next::on : Next::end;
+    }
+
+    GRAFTAL_INLINE Next enter(Going& going) {
+        const EvenPart& part = model.even_parts[going.entry];
+        if (part.kind != EvenPart::Kind::node) {
+            meet_leaf(part, going);
+            return Next::end;
+        }
+        Frame& frame = frame_after(going.frame); // parents may move, but no more after this
+        const Frame& parent = frames[going.frame];
+        if (!go_to_child(part, going.entry, parent, frame)) return Next::end;
+        const TraceNode& node = model.nodes[part.child];
+        const bool is_proxy = frame.cut && node.stop_tree == no_tree;
+        if (is_proxy && node.faint) return Next::alone;
+        count(going);
+        for (int i = 0; i < 2; ++i) {
+            const Double4 at = doubles_of(going.at, i);
+            for (int axis = 0; axis < 3; ++axis)
+                frame.origin[axis].half[i] =
+                    (parent.origin[axis].half[i] + at * direction[axis].half[i]) * splat(part.shrink()) +
+                    splat(part.shift[axis]);
+            frame.base.half[i] = parent.base.half[i] + at * parent.unit.half[i];
+            frame.unit.half[i] = parent.unit.half[i] * part.stretch;
+            frame.speed.half[i] = parent.speed.half[i] * part.growth;
+        }
+        if (is_proxy) {
+            meet_proxy(node, frame, going);
+            return Next::end;
+        }
+        ready_rays(frame, going.mask);
+        return go_in(node, frame.cut, frame.cut ? node.stop_tree : tree_of(node, frame, part, parent), going);
+    }
+
+    /// Takes one ray on alone from an entry on; true if it met something nearer.
+    GRAFTAL_INLINE bool resume(const Going& going, int lane, const RayRange& range) const {
+        EvenKernel<instructions, false> alone(self, model, range);
+        while (self.even_frames_.size() <= going.frame)
+            self.even_frames_.resize(2 * self.even_frames_.size());
+        alone.frames = self.even_frames_.data();
+        const Frame& parent = frames[going.frame];
+        EvenFrame& frame = alone.frames[going.frame];
+        static_cast<EvenPlace&>(frame) = parent;
+        frame.origin =
+            Double4{of(parent.origin[0], lane), of(parent.origin[1], lane), of(parent.origin[2], lane), 0};
+        frame.base = of(parent.base, lane);
+        frame.unit = of(parent.unit, lane);
+        frame.speed = of(parent.speed, lane);
+        frame.near = __builtin_convertvector(frame.origin, Float4);
+        frame.least = parent.least[lane];
+        for (std::uint32_t above = 1; above < going.frame; ++above)
+            alone.frames[above].edge = frames[above].edge;
+        alone.direction = Double4{of(direction[0], lane), of(direction[1], lane), of(direction[2], lane), 0};
+        alone.inverse = Double4{of(inverse[0], lane), of(inverse[1], lane), of(inverse[2], lane), 0};
+        alone.is_parallel = false;
+        for (int axis = 0; axis < 3; ++axis)
+            alone.reciprocal[axis] = spread<instructions>(reciprocal[axis][lane]);
+        alone.set_sides(sides);
+        alone.first_placed = going.frame;
+        return alone.go_on({going.at[lane], going.entry, going.frame});
+    }
+
     // Intersections (packet_leaves.h):
     struct Near {
         Double4 origin[3], along[3];
@@ -409,8 +483,11 @@ struct Traversal::PacketWalk : PlacesOf {
     static Crossing cross_triangle(const Near& near);
     /// Sets the range of four rays that are where they start from.
     void ready_range(Near& near, int half) const;
-    /// Meets what stands for a node that is cut, in whose frame the rays are; as keep_crossings().
-    bool meet_proxy(const TraceNode& node, Near (&near)[2], std::uint32_t mask);
+    /// Four rays of those on their way into a leaf.
+    Near bring_near(const EvenPart& part, const TraceEdge& edge, const Going& going, int half) const;
+    void meet_leaf(const EvenPart& part, const Going& going);
+    /// Meets the stand-in of the frame's node, which is cut, and the next after that where the rays are.
+    void meet_proxy(const TraceNode& node, const Frame& frame, const Going& going);
     /// Four rays that pass the unit sphere.
     static std::uint32_t passing_sphere(const Near& near);
     /// The crossing of each ray of the mask by itself.

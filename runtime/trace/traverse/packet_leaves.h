@@ -8,9 +8,9 @@
 namespace graftal {
 
 /// Crosses a cube by the operations of the primitive (cube.cpp), with rays that are parallel to no side.
-template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
-GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::cross_cube(
-    const Near& near, const Double4 (&inverse)[3]) -> Crossing {
+template<Instructions instructions>
+GRAFTAL_INLINE auto Traversal::Packet<instructions>::cross_cube(const Near& near, const Double4 (&inverse)[3])
+    -> Crossing {
     Double4 enter[3], leave[3];
     for (int axis = 0; axis < 3; ++axis) {
         const Double4 a = (-1 - near.origin[axis]) * inverse[axis],
@@ -37,9 +37,8 @@ GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameO
 }
 
 /// Likewise (triangle.cpp).
-template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
-GRAFTAL_INLINE auto
-Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::cross_triangle(const Near& near) -> Crossing {
+template<Instructions instructions>
+GRAFTAL_INLINE auto Traversal::Packet<instructions>::cross_triangle(const Near& near) -> Crossing {
     constexpr double root3 = 1.7320508075688772;
     Crossing crossing;
     const Double4 t = -near.origin[2] / near.along[2];
@@ -52,45 +51,48 @@ Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::cross_triangle(c
     return crossing;
 }
 
-template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
-GRAFTAL_INLINE void
-Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::ready_range(Near& near, int half) const {
+template<Instructions instructions>
+GRAFTAL_INLINE void Traversal::Packet<instructions>::ready_range(Near& near, int half) const {
     near.least = (least.half[half] - near.base) * near.speed;
     near.most = (best.half[half] - near.base) * near.speed;
 }
 
-/// Kernel::meet_proxy() for a packet.
-template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
-GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::meet_proxy(
-    const TraceNode& node, Near (&near)[2], std::uint32_t mask) {
+template<Instructions instructions>
+GRAFTAL_INLINE void Traversal::Packet<instructions>::meet_proxy(const TraceNode& node, const Frame& frame,
+                                                                const Going& going) {
     const LaneMap& map = node.proxy_from_node;
+    Near near[2];
     Crossing crossing[2];
     for (int i = 0; i < 2; ++i) {
         Near& n = near[i];
-        Double4 origin[3], along[3];
+        const Double4 from[3] = {frame.origin[0].half[i], frame.origin[1].half[i], frame.origin[2].half[i]},
+                      to[3] = {direction[0].half[i], direction[1].half[i], direction[2].half[i]};
         for (int axis = 0; axis < 3; ++axis) {
-            origin[axis] =
-                through(map, n.origin[0], n.origin[1], n.origin[2], axis) + splat(map.translation[axis]);
-            along[axis] = through(map, n.along[0], n.along[1], n.along[2], axis);
+            n.origin[axis] = through(map, from[0], from[1], from[2], axis) + splat(map.translation[axis]);
+            n.along[axis] = through(map, to[0], to[1], to[2], axis);
         }
-        const Double4 growth = largest_of(along[0], along[1], along[2]), stretch = 1 / growth;
-        for (int axis = 0; axis < 3; ++axis) {
-            n.origin[axis] = origin[axis];
-            n.along[axis] = along[axis] * stretch;
-        }
-        n.unit = n.unit * stretch;
-        n.speed = n.speed * growth;
+        const Double4 growth = largest_of(n.along[0], n.along[1], n.along[2]), stretch = 1 / growth;
+        for (int axis = 0; axis < 3; ++axis)
+            n.along[axis] = n.along[axis] * stretch;
+        n.base = frame.base.half[i];
+        n.is_map = n.base == n.base;
+        n.unit = frame.unit.half[i] * stretch;
+        n.speed = frame.speed.half[i] * growth;
         ready_range(n, i);
-        crossing[i] = cross_any(PrimitiveKind::sphere, n, i, mask);
+        crossing[i] = cross_any(PrimitiveKind::sphere, n, i, going.mask);
         crossing[i].in_world = n.base + crossing[i].t * n.unit;
     }
-    return keep_crossings(near, crossing, mask);
+    if (!keep_crossings(near, crossing, going.mask)) return;
+    PacketRoom::Hit& hit = room.hits.back();
+    hit.proxy_node = frame.node;
+    place(frame, node.node_from_proxy, hit.world_from_leaf);
+    keep_way(going.frame + 1, hit);
+    hit.way_end = room.ways.size();
 }
 
 /// Meets a sphere by the operations of the primitive (sphere.cpp), until it is known which rays pass.
-template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
-GRAFTAL_INLINE std::uint32_t
-Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::passing_sphere(const Near& near) {
+template<Instructions instructions>
+GRAFTAL_INLINE std::uint32_t Traversal::Packet<instructions>::passing_sphere(const Near& near) {
     const auto dot = [](const Double4(&a)[3], const Double4(&b)[3])
                          GRAFTAL_INLINED_LAMBDA { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
     const Double4 middle = -dot(near.origin, near.along) / dot(near.along, near.along);
@@ -100,9 +102,10 @@ Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::passing_sphere(c
     return bits_of<instructions>(1 - dot(point, point) < 0);
 }
 
-template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
-GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::cross_any(
-    const Primitive& primitive, const Near& near, int half, std::uint32_t mask) const -> Crossing {
+template<Instructions instructions>
+GRAFTAL_INLINE auto Traversal::Packet<instructions>::cross_any(const Primitive& primitive, const Near& near,
+                                                               int half, std::uint32_t mask) const
+    -> Crossing {
     Crossing crossing{};
     std::uint32_t may = bits_of<instructions>(near.is_map);
     if (primitive == PrimitiveKind::sphere) may &= ~passing_sphere(near);
@@ -127,9 +130,10 @@ GRAFTAL_INLINE auto Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameO
     return crossing;
 }
 
-template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
-GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameOf>::keep_crossings(
-    const Near (&near)[2], const Crossing (&crossing)[2], std::uint32_t mask) {
+template<Instructions instructions>
+GRAFTAL_INLINE bool Traversal::Packet<instructions>::keep_crossings(const Near (&near)[2],
+                                                                    const Crossing (&crossing)[2],
+                                                                    std::uint32_t mask) {
     Double8 t;
     std::uint32_t hit = 0, close = 0;
     for (int i = 0; i < 2; ++i) {
@@ -157,6 +161,71 @@ GRAFTAL_INLINE bool Traversal::PacketWalk<instructions, Packet, PlacesOf, FrameO
     }
     room.hits.emplace_back();
     return true;
+}
+
+template<Instructions instructions>
+GRAFTAL_INLINE void Traversal::Packet<instructions>::meet_leaf(const EvenPart& part, const Going& going) {
+    count(going);
+    const TraceEdge& edge = model.edges[going.entry];
+    Near near[2];
+    Crossing crossing[2];
+    for (int i = 0; i < 2; ++i) {
+        near[i] = bring_near(part, edge, going, i);
+        const Double4 over[3] = {inverse[0].half[i], inverse[1].half[i], inverse[2].half[i]};
+        crossing[i] = part.kind == EvenPart::Kind::cube ? cross_cube(near[i], over)
+                      : part.kind == EvenPart::Kind::triangle
+                          ? cross_triangle(near[i])
+                          : cross_any(model.nodes[part.child].primitive, near[i], i, going.mask);
+        crossing[i].in_world = near[i].base + crossing[i].t * near[i].unit;
+    }
+    if (!keep_crossings(near, crossing, going.mask)) return;
+    PacketRoom::Hit& hit = room.hits.back();
+    const Frame& parent = frames[going.frame];
+    hit.is_upright = part.upright && !room.has_patterns;
+    if (!hit.is_upright) place(parent, edge.parent_from_child, hit.world_from_leaf);
+    if (room.has_textures) hit.turns = edge.turns;
+    prefetch_look(going.entry);
+    keep_way(going.frame, hit);
+    room.ways.push_back(going.entry | (parent.cut ? from_cut : 0));
+    hit.way_end = room.ways.size();
+}
+
+template<Instructions instructions>
+GRAFTAL_INLINE auto Traversal::Packet<instructions>::bring_near(const EvenPart& part, const TraceEdge& edge,
+                                                                const Going& going, int half) const -> Near {
+    const Frame& parent = frames[going.frame];
+    const Double4 at = doubles_of(going.at, half);
+    Near near;
+    near.base = parent.base.half[half] + at * parent.unit.half[half];
+    Double4 from[3];
+    for (int axis = 0; axis < 3; ++axis)
+        from[axis] = parent.origin[axis].half[half] + at * direction[axis].half[half];
+    Double4 growth = splat(part.growth), stretch = splat(part.stretch);
+    near.is_map = growth == growth;
+    if (part.upright) {
+        for (int axis = 0; axis < 3; ++axis) {
+            near.origin[axis] = from[axis] * splat(part.shrink()) + splat(part.shift[axis]);
+            near.along[axis] = direction[axis].half[half];
+        }
+    } else {
+        const LaneMap& map = edge.child_from_parent;
+        for (int axis = 0; axis < 3; ++axis) {
+            near.origin[axis] = through(map, from[0], from[1], from[2], axis) + splat(map.translation[axis]);
+            near.along[axis] =
+                through(map, direction[0].half[half], direction[1].half[half], direction[2].half[half], axis);
+        }
+        if (!edge.similarity) {
+            growth = largest_of(near.along[0], near.along[1], near.along[2]);
+            near.is_map = (growth > splat(0.0)) & (growth < splat(1 / least_scale));
+            stretch = 1 / growth;
+        }
+        for (int axis = 0; axis < 3; ++axis)
+            near.along[axis] = near.along[axis] * stretch;
+    }
+    near.unit = parent.unit.half[half] * stretch;
+    near.speed = parent.speed.half[half] * growth;
+    ready_range(near, half);
+    return near;
 }
 
 } // namespace graftal

@@ -12,31 +12,16 @@
 namespace graftal {
 
 struct Traversal::PacketRoom {
-    /// All rays in a frame.
-    struct alignas(64) Rays {
+    /// An object on the way from the root, and all rays in its frame.
+    struct alignas(64) Frame : EvenPlace {
         Double8 origin[3]; ///< by axis
         Double8 base, unit, speed;
+        Float8 near[3]; ///< the origin
         Float8 least;
         float extreme[2][3];         ///< the least and the greatest of the origins, by axis
         float first_least;           ///< the least of `least`
         Float8 most;                 ///< parts nearer than the best hits begin before this
         std::uint32_t hits_then = 0; ///< hits of the packet when that was so
-    };
-
-    /// An object on the way from the root of an even model, and the rays in its frame.
-    struct EvenFrame : EvenPlace, Rays {
-        Float8 near[3]; ///< the origin
-    };
-
-    /// An object on the way from the root of any model, and the rays in its frame.
-    struct Frame : Place, Rays {
-        Double8 direction[3];
-        Float8 near[2][3]; ///< the origin less the margin, as the lower sides of boxes and the upper see it
-        Float8 reciprocal[3];
-        float least_reciprocal[3], most_reciprocal[3]; ///< of all rays
-        std::uint32_t side_in[3];                      ///< of boxes, unless rays go in by both
-        bool mixed[3];                                 ///< then
-        bool any_mixed;
     };
 
     /// An edge or a node of boxes that rays are to look into. Where each of them enters its box is computed
@@ -65,8 +50,7 @@ struct Traversal::PacketRoom {
 
     bool has_textures = false; ///< then what is seen depends on where a part is met
     bool has_patterns = false; ///< likewise
-    std::vector<EvenFrame> even_frames;
-    std::vector<Frame> frames; ///< either these or those
+    std::vector<Frame> frames = std::vector<Frame>(16);
     std::vector<Entry> entries = std::vector<Entry>(128);
     std::size_t top = 0; ///< entries in use
     std::vector<Hit> hits;

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "runtime/trace/traverse/packet_even.h"
-#include "runtime/trace/traverse/packet_turned.h"
+#include "runtime/trace/traverse/packet_leaves.h"
 #include "runtime/trace/traverse/traversal.h"
 
 namespace graftal {
@@ -34,24 +33,17 @@ GRAFTAL_AVX2 Outcome run_packet_avx2(Traversal& traversal, std::span<const Ray> 
     return {packet.found, packet.to_go_alone()};
 }
 
-template<template<Instructions> typename Packet>
-Outcome run_by(Instructions instructions, Traversal& traversal, std::span<const Ray> rays,
-               const RayRange& range) {
-    if constexpr (knows_avx2)
-        if (instructions == Instructions::avx2)
-            return run_packet_avx2<Packet<Instructions::avx2>>(traversal, rays, range);
-    return graftal::run_packet<Packet<Instructions::portable>>(traversal, rays, range);
-}
-
 } // namespace
 
 std::uint32_t Traversal::run_packet(std::span<const Ray> rays, const RayRange& range,
                                     std::uint32_t& to_go_alone) {
     Outcome outcome;
-    if (model_.even)
-        outcome = run_by<EvenPacket>(instructions_, *this, rays, range);
+    if constexpr (knows_avx2)
+        outcome = instructions_ == Instructions::avx2
+                      ? run_packet_avx2<Packet<Instructions::avx2>>(*this, rays, range)
+                      : graftal::run_packet<Packet<Instructions::portable>>(*this, rays, range);
     else
-        outcome = run_by<TurnedPacket>(instructions_, *this, rays, range);
+        outcome = graftal::run_packet<Packet<Instructions::portable>>(*this, rays, range);
     to_go_alone = outcome.to_go_alone;
     return outcome.found & ~to_go_alone;
 }

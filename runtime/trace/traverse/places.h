@@ -1,7 +1,7 @@
 #pragma once
 
 // Choice of the parts of a model that rays look into, and the parts' places in the world. Neither depends on
-// the rays. Only traversal.cpp and packets.cpp include this.
+// the rays. Only traversal.cpp includes this.
 
 #include <algorithm>
 #include <cmath>

@@ -27,38 +27,14 @@ Instructions best_instructions() {
     return Instructions::portable;
 }
 
-namespace {
-
-/// Whether packets may go through a model that is not even: what a ray meets in it does not depend on how far
-/// it had come before. Shells reach out of the boxes of what they stand for, so that a ray which has met
-/// something may pass them by. Sets without area are left out because each ray meets specks of its own.
-bool goes_in_packets(const TraceModel& model) {
-    const auto is_plain = [](const TraceNode& node) {
-        return node.kind == TraceNode::Kind::parts || node.kind == TraceNode::Kind::run ||
-               (node.kind == TraceNode::Kind::primitive && !is_endless(node));
-    };
-    const bool in_specks = model.projection.culls() && model.nodes[model.edges.front().child].faint;
-    return std::ranges::all_of(model.nodes, is_plain) && !model.has_shells && !model.is_content() &&
-           !in_specks;
-}
-
-} // namespace
-
 Traversal::Traversal(const TraceModel& model, Instructions instructions)
     : model_(model), instructions_(instructions) {
     frames_.resize(16);
     later_.resize(128);
-    if (model.even) {
-        even_frames_.resize(16);
-        EvenPlaces{*this, model, {}}.find_root();
-    } else if (!goes_in_packets(model)) {
-        return;
-    }
+    if (!model.even) return;
+    even_frames_.resize(16);
+    EvenPlaces{*this, model, {}}.find_root();
     packet_ = std::make_unique<PacketRoom>();
-    if (model.even)
-        packet_->even_frames.resize(16);
-    else
-        packet_->frames.resize(16);
     packet_->has_textures = std::ranges::any_of(model.textures.of_material,
                                                 [](const auto& texture) { return texture != nullptr; });
     packet_->has_patterns = std::ranges::any_of(
@@ -104,12 +80,7 @@ bool Traversal::run(const Ray& ray, const RayRange& range, const From*... from) 
 
 template<bool any> bool Traversal::run(const Ray& ray, const RayRange& range) {
     if (model_.even) return run<EvenKernel, any>(ray, range);
-    return run<Kernel, any>(ray, range, static_cast<const Entry*>(nullptr));
-}
-
-bool Traversal::resume(const Entry& from, const RayRange& range) {
-    const Ray ray = ray_;
-    return run<Kernel, false>(ray, range, &from);
+    return run<Kernel, any>(ray, range);
 }
 
 bool Traversal::ask_operands(const Ray& ray, const Frame& frame, std::uint32_t first, std::uint32_t end,

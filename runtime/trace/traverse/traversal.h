@@ -55,7 +55,7 @@ class Traversal final : public Surfaces {
                                std::span<SurfaceHit> hits) override;
     bool meets_any(const Ray& ray, const RayRange& range) override;
     bool all_opaque() const override;
-    /// Whether several rays may go together at all: where what they meet depends on no order of parts.
+    /// Whether several rays may go together at all: in even models, whose rays keep their directions.
     bool takes_packets() const { return packet_ != nullptr; }
 
     /// Begins with another ray of the camera. It, and all rays that it makes, may go into some times as many
@@ -77,12 +77,9 @@ class Traversal final : public Surfaces {
     template<Instructions instructions, bool any> struct Kernel; ///< the traversal proper (kernel.h)
     struct EvenPlaces; ///< which parts of an even model are looked into (even_places.h)
     template<Instructions instructions, bool any> struct EvenKernel; ///< through even models (even.h)
-    template<Instructions instructions, typename Packet, typename PlacesOf, typename FrameOf>
-    struct PacketWalk;                                       ///< eight rays at once (packet.h)
-    template<Instructions instructions> struct EvenPacket;   ///< through even models (packet_even.h)
-    template<Instructions instructions> struct TurnedPacket; ///< through others (packet_turned.h)
-    struct PacketRoom;                                       ///< their memory
-    struct LaterEntries;                                     ///< entries for a ray to look into later
+    template<Instructions instructions> struct Packet; ///< eight rays at once through even models (packet.h)
+    struct PacketRoom;                                 ///< their memory
+    struct LaterEntries;                               ///< entries for a ray to look into later
 
     /// The ray in some frame: origin + (t - base) / unit * direction.
     struct LocalRay {
@@ -242,8 +239,6 @@ class Traversal final : public Surfaces {
     template<template<Instructions, bool> typename AnyKernel, bool any, typename... From>
     bool run(const Ray& ray, const RayRange& range, const From*... from);
     template<bool any> bool run(const Ray& ray, const RayRange& range);
-    /// Takes ray_ on from an entry of a frame that is ready; true if something nearer than best_.t was met.
-    bool resume(const Entry& from, const RayRange& range);
     /// Takes patience for parts that lanes saw are not met, as visits to them would.
     void lose_patience(std::uint64_t parts) { patience_ -= std::min(patience_, parts); }
     /// Parts that the next ray may go into: few where the camera's ray has had its share.
@@ -316,7 +311,6 @@ class Traversal final : public Surfaces {
     static constexpr std::uint64_t most_full_rays = 4;
     std::uint64_t path_limit_ = UINT64_MAX; ///< of the camera's ray
     bool hurries_ = false;                  ///< the ray has passed the limit
-    bool met_flat_ = false;                 ///< rays of a packet that went on alone met flat parts
     Search search_ = Search::surface;
     double leaves_ = 0;                ///< where the ray leaves what it is in, as far as is known
     std::unique_ptr<Traversal> inner_; ///< goes through operands; made when it is first needed

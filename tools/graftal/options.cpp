@@ -398,7 +398,7 @@ constexpr Command commands[] = {
      run_points},
     {"collage", "Measure how well a model's maps cover a target picture", add_collage, complete_nothing,
      run_collage},
-    {"fit", "Find an iterated function system whose attractor is a target picture", add_fit_options,
+    {"fit", "Find a model: of a picture's maps, or of a drawing's L-system", add_fit_options,
      complete_fit, run_fit, ".rifs"},
     {"compile", "Write a model as a POV-Ray scene", add_compile, complete_compile, run_compile, ".pov"},
     {"export", "Write a model for other programs: Blender, web pages, printers, renderers", add_export,

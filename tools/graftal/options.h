@@ -45,6 +45,7 @@ struct FitSettings {
     std::size_t most_maps = 8;
     bool similar = false;
     std::string start; ///< a model, or ""
+    std::optional<double> tolerance; ///< of drawings
 };
 
 /// Options of `studio`.

@@ -8,6 +8,7 @@
 
 #include "compiler/import/importers.h"
 #include "compiler/support/number.h"
+#include "runtime/inverse/lsystem/drawing_file.h"
 #include "runtime/points/card.h"
 #include "runtime/points/draw_points.h"
 #include "tools/graftal/options/shared.h"
@@ -25,6 +26,12 @@ std::optional<std::uint64_t> parse_points(const std::string& text) {
     if (!value || !(*value >= 1 && *value <= most_points) || *value != std::floor(*value))
         return std::nullopt;
     return static_cast<std::uint64_t>(*value);
+}
+
+/// A share above 0, up to a fifth.
+std::optional<double> parse_tolerance(const std::string& text) {
+    const std::optional<double> value = parse_number(text);
+    return value && *value >= 1e-6 && *value <= 0.2 ? value : std::nullopt;
 }
 
 /// An option whose value is a number above 0.
@@ -158,11 +165,13 @@ std::string complete_points(Options& options) {
 
 namespace {
 
+constexpr const char* target_help =
+    "Picture of the target set: its dark pixels, or its opaque pixels if it has an alpha channel";
+
 /// The picture of a target, and which of its pixels are meant.
-void add_target(CLI::App& app, Options& options) {
+void add_target(CLI::App& app, Options& options, const std::string& help) {
     app.add_option(
-           "TARGET", options.points.target,
-           "Picture of the target set: its dark pixels, or its opaque pixels if it has an alpha channel")
+           "TARGET", options.points.target, help)
         ->required()
         ->type_name("");
     add_value(app, "--threshold", "T",
@@ -175,7 +184,7 @@ void add_target(CLI::App& app, Options& options) {
 } // namespace
 
 void add_collage_options(CLI::App& app, Options& options) {
-    add_target(app, options);
+    add_target(app, options, target_help);
     const auto set = [&options](const std::string& model) { options.operands = {model}; };
     app.add_option_function<std::string>("MODEL", set, "Model file of a flat iterated function system, or -")
         ->required()
@@ -190,10 +199,16 @@ void add_collage_options(CLI::App& app, Options& options) {
 
 void add_fit_options(CLI::App& app, Options& options) {
     FitSettings& fit = options.fit;
-    add_target(app, options);
+    add_target(app, options,
+               std::string(target_help) + "; or a drawing (.svg, .csv, .txt, .lsys), for an L-system");
     app.add_option("-o,--output", options.render.output,
-                   "Model to write, .rifs (default: TARGET's name + .rifs, in this folder)")
+                   "Model to write: .rifs, or .lsys for a drawing (default: TARGET's name, in this folder)")
         ->type_name("FILE");
+    add_value(app, "--tolerance", "SHARE",
+              "Ends of a drawing's lines meet where they are no farther apart, as a share of the shortest "
+              "line (default 0.01)",
+              "a number from 1e-6 to 0.2", parse_tolerance,
+              [&fit](double tolerance) { fit.tolerance = tolerance; });
     add_value(
         app, "--maps", "N", "Most maps of the system (default 8)", "a whole number from 2 to 24",
         [](const std::string& text) { return parse_whole(text, 2, 24); },
@@ -216,14 +231,21 @@ void add_fit_options(CLI::App& app, Options& options) {
         "  graftal fit leaf.png                                   # makes leaf.rifs\n"
         "  graftal fit leaf.png --maps 4 --work 120 --seed 7 -o other.rifs\n"
         "  graftal fit leaf.png --start leaf.rifs                 # goes on from there\n"
+        "  graftal fit curve.svg                                  # an L-system: makes curve.lsys\n"
         "  graftal points leaf.rifs --size 400x400 -o again.png   # the target's size gives its frame");
 }
 
 std::string complete_fit(Options& options) {
     std::string& output = options.render.output;
-    if (output.empty()) output = model_stem(options.points.target) + ".rifs";
-    if (output != "-" && !output.ends_with(".rifs"))
-        return fmt::format("'{}': the name of the model must end in .rifs", output);
+    const bool draws = is_drawing_name(options.points.target);
+    const std::string ending = draws ? ".lsys" : ".rifs";
+    if (output.empty()) output = model_stem(options.points.target) + ending;
+    if (output != "-" && !output.ends_with(ending))
+        return fmt::format("'{}': the name of the model must end in {}", output, ending);
+    if (output == options.points.target) return fmt::format("'{}' is the drawing: name another file by -o", output);
+    if (!draws && options.fit.tolerance) return "--tolerance is for drawings: .svg, .csv, .txt and .lsys";
+    if (draws && (options.fit.similar || !options.fit.start.empty() || options.fit.most_maps != FitSettings().most_maps))
+        return "--maps, --similar and --start are for pictures, and not for drawings";
     if (output == "-" && options.json)
         return "--json prints where '-o -' writes the model: leave one of them out";
     return {};

@@ -303,7 +303,7 @@ void study(std::uint64_t seed, std::uint64_t number, double seconds) {
     double angle_deg = 0;
     std::string problem;
     try {
-        WorkMeter meter(control, "search", 4096, 5e-8);
+        WorkMeter meter(control, "search", 4096, 4e-8);
         for (const StrokeGraph& graph : stroke_graphs(shuffled, 0.01, problem)) {
             angle_deg = graph.angle_deg;
             found = find_grammar(graph, meter, {});

@@ -9,7 +9,7 @@ namespace {
 
 constexpr unsigned most_steps = 14;
 constexpr std::uint8_t most_axiom_letters = 6;
-constexpr double seconds_of_growth = 2e-8; ///< of one table of numbers, for all steps
+constexpr double seconds_of_growth = 1e-7; ///< of one table of numbers, for all steps
 
 using Counts = Growth::Counts;
 

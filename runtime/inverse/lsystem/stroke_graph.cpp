@@ -144,7 +144,7 @@ class StrokeGraphBuilder {
     }
 
     /// The angle of which the turns are the smallest multiples.
-    bool find_angle(const StrokeGraph& graph, double noise_deg, AngleGrid& best) const {
+    bool find_angle(const StrokeGraph& graph, double noise_deg, AngleGrid& best) {
         const std::vector<double> found = distinct_degrees();
         std::vector<double> joints = joint_turns(graph);
         std::erase_if(joints, [&](double turn) { return turn < 0.5 * least_angle_deg; });
@@ -179,7 +179,36 @@ class StrokeGraphBuilder {
                     best.angle_deg = refined(joints, grid);
                 }
             }
-        return least < HUGE_VAL;
+        if (least < HUGE_VAL) return true;
+        for (const auto& turn : turns)
+            if (follow_turns(graph, refined(joints, {turn.first, 0}))) {
+                best = {refined(joints, {turn.first, 0}), 0};
+                return true;
+            }
+        return false;
+    }
+
+    /// Finds directions that go round many times, from stroke to stroke; false if they are no multiples.
+    bool follow_turns(const StrokeGraph& graph, double angle_deg) {
+        constexpr double most_error_deg = 0.02;
+        std::vector<std::vector<std::uint32_t>> leaving(graph.places.size());
+        for (std::uint32_t i = 0; i < strokes_.size(); ++i)
+            leaving[ends_[2 * i]].push_back(i);
+        std::vector<bool> seen(strokes_.size());
+        followed_.assign(strokes_.size(), 0);
+        const auto next_to = [&](std::uint32_t at, const auto& next) {
+            for (const std::uint32_t place : {ends_[2 * at], ends_[2 * at + 1]})
+                for (const std::uint32_t other : leaving[place]) {
+                    const double turn = wrapped_deg(degrees_[other] - degrees_[at]);
+                    const auto units = static_cast<std::int32_t>(std::lround(turn / angle_deg));
+                    if (seen[other] || std::abs(turn - units * angle_deg) > most_error_deg) continue;
+                    followed_[other] = followed_[at] + units;
+                    next(other);
+                }
+        };
+        if (visit_from(0, seen, next_to) == strokes_.size()) return true;
+        followed_.clear();
+        return false;
     }
 
     /// Directions, to a twentieth of a degree.
@@ -243,7 +272,8 @@ class StrokeGraphBuilder {
         };
         std::vector<Link> links;
         for (std::uint32_t i = 0; i < strokes_.size(); ++i) {
-            links.push_back({ends_[2 * i], ends_[2 * i + 1], grid.units(degrees_[i]), classes[i]});
+            const std::int32_t direction = followed_.empty() ? grid.units(degrees_[i]) : followed_[i];
+            links.push_back({ends_[2 * i], ends_[2 * i + 1], direction, classes[i]});
         }
         std::ranges::sort(links, {}, [](const Link& link) {
             return std::tuple(link.from, link.direction, link.to, link.length);
@@ -331,6 +361,7 @@ class StrokeGraphBuilder {
     std::unordered_multimap<std::uint64_t, std::uint32_t> cells_; ///< places, by cells of a grid
     std::vector<std::uint32_t> ends_;                             ///< places, two a stroke
     std::vector<double> degrees_;                                 ///< of strokes, from the first
+    std::vector<std::int32_t> followed_; ///< directions of strokes, where they are found one from another
 };
 
 namespace {

@@ -60,7 +60,7 @@ class Unfolding {
         std::int32_t known = 0;
         std::uint8_t count = 0;
         bool lost = false; ///< too many unknowns
-        std::array<Term, 6> terms = {};
+        std::array<Term, 14> terms = {};
     };
 
     enum class Mark : std::uint8_t { letter, open, close };

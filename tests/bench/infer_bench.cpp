@@ -1,13 +1,15 @@
-// infer_bench SEED FIRST COUNT SECONDS: makes random L-systems of one to four rules, draws each, hands over the
-// segments in random order, and looks whether the system is found again. It prints a line of fields, separated
-// by tabs, for each: name, kind, segments, letters of the true rules, letters of the found ones, whether the
-// found system draws the same at its depth, and one deeper, processor seconds, true rules, found rules.
+// infer_bench SEED FIRST COUNT SECONDS: makes random L-systems of one to four rules, draws each, turns and
+// scales the drawing, hands over its segments in random order, and looks whether the system is found again.
+// "scene FILE SECONDS": takes the segments of a model. Each gives a line of fields, separated by tabs: name,
+// kind, segments, letters of the true rules, letters of the found ones, whether the found system draws the
+// same at its depth, and one deeper, processor seconds, the true rules, the found ones.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -16,7 +18,10 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/lower/plant.h"
+#include "runtime/inverse/lsystem/drawing_file.h"
 #include "runtime/inverse/lsystem/grammar_search.h"
+#include "runtime/render/picture_session.h"
 
 namespace graftal {
 namespace {
@@ -26,7 +31,8 @@ constexpr std::size_t most_letters = 20'000, least_segments = 24;
 /// Random numbers that are the same everywhere.
 class Dice {
   public:
-    explicit Dice(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ull + 0x1234567) {}
+    /// Seeds that are near give numbers that are not.
+    explicit Dice(std::uint64_t seed) : state_(seed ^ 0x1234567) { state_ = next() ^ next() << 1; }
     std::size_t below(std::size_t n) { return static_cast<std::size_t>(next() % n); }
     bool one_in(std::size_t n) { return below(n) == 0; }
 
@@ -104,7 +110,8 @@ Truth as_letters(const FoundGrammar& found, double angle_deg) {
         std::string all;
         for (const RuleSymbol& symbol : word)
             if (symbol.kind == RuleSymbol::Kind::turn)
-                all += std::string(static_cast<std::size_t>(std::abs(symbol.value)), symbol.value > 0 ? '+' : '-');
+                all += std::string(static_cast<std::size_t>(std::abs(symbol.value)),
+                                   symbol.value > 0 ? '+' : '-');
             else
                 all += symbol.kind == RuleSymbol::Kind::letter ? letter(symbol.value)
                        : symbol.kind == RuleSymbol::Kind::open ? '['
@@ -156,7 +163,8 @@ class Comparison {
         const Vec2 middle = centre(other);
         std::vector<bool> used(strokes_.size());
         for (const Stroke& stroke : other) {
-            const Vec2 from = turned(stroke.from - middle) + centre_, to = turned(stroke.to - middle) + centre_;
+            const Vec2 from = turned(stroke.from - middle) + centre_,
+                       to = turned(stroke.to - middle) + centre_;
             if (!take(from, to, used)) return false;
         }
         return true;
@@ -228,14 +236,15 @@ Truth random_system(Dice& dice) {
         truth.rules['F'] = std::string(1 + dice.below(2), 'F');
         const std::string hidden = std::string("XYZ").substr(0, rules - 1);
         for (const char letter : hidden)
-            truth.rules[letter] = (dice.one_in(2) ? "F" : "") +
-                                  random_rule(dice, "F" + hidden, 2 + dice.below(3), brackets);
+            truth.rules[letter] =
+                (dice.one_in(2) ? "F" : "") + random_rule(dice, "F" + hidden, 2 + dice.below(3), brackets);
         truth.axiom = "X";
     } else {
         truth.drawn = std::string("ABC").substr(0, rules);
         if (rules == 1) truth.drawn = "F";
         for (const char letter : truth.drawn)
-            truth.rules[letter] = random_rule(dice, truth.drawn, 2 + dice.below(rules == 1 ? 5 : 3), brackets);
+            truth.rules[letter] =
+                random_rule(dice, truth.drawn, 2 + dice.below(rules == 1 ? 5 : 3), brackets);
         truth.axiom = truth.drawn.substr(0, 1);
         if (dice.one_in(4)) { // a polygon
             const std::string side = truth.axiom + "+";
@@ -269,10 +278,13 @@ Truth usable_system(Dice& dice) {
             --truth.steps;
         if (truth.steps < 3) continue;
         const std::size_t segments = drawing_of(truth, *word_after(truth, truth.steps, most_letters)).size();
-        const std::size_t before = drawing_of(truth, *word_after(truth, truth.steps - 1, most_letters)).size();
-        const bool turns = std::ranges::any_of(
-            truth.rules, [](const auto& rule) { return rule.second.find_first_of("+-") != std::string::npos; });
-        if (segments >= std::max(least_segments, 4 * letters_of(truth)) && segments > before && turns) return truth;
+        const std::size_t before =
+            drawing_of(truth, *word_after(truth, truth.steps - 1, most_letters)).size();
+        const bool turns = std::ranges::any_of(truth.rules, [](const auto& rule) {
+            return rule.second.find_first_of("+-") != std::string::npos;
+        });
+        if (segments >= std::max(least_segments, 4 * letters_of(truth)) && segments > before && turns)
+            return truth;
     }
 }
 
@@ -283,16 +295,21 @@ std::string rules_text(const Truth& truth) {
     return text + " n" + std::to_string(truth.steps) + " a" + std::to_string(truth.angle_deg).substr(0, 4);
 }
 
-void study(std::uint64_t seed, std::uint64_t number, double seconds) {
-    Dice dice(seed * 1'000'003 + number);
-    const Truth truth = usable_system(dice);
-    const Strokes drawn = drawing_of(truth, *word_after(truth, truth.steps, most_letters));
-    Strokes shuffled = drawn;
-    for (std::size_t i = shuffled.size(); i > 1; --i)
-        std::swap(shuffled[i - 1], shuffled[dice.below(i)]);
-    const double deg = static_cast<double>(dice.below(360)), size = 1 + static_cast<double>(dice.below(50));
-    const double c = size * std::cos(deg), s = size * std::sin(deg);
-    for (Stroke& stroke : shuffled)
+/// The outcome of one search, as a line of the table.
+struct Outcome {
+    std::string name, kind, truth;
+    std::size_t segments = 0, letters = 0;
+    std::function<std::optional<Strokes>()> deeper; ///< the true drawing after one step more
+};
+
+void study(Outcome outcome, Strokes drawn, double seconds, Dice& dice) {
+    const Strokes truth = drawn;
+    for (std::size_t i = drawn.size(); i > 1; --i)
+        std::swap(drawn[i - 1], drawn[dice.below(i)]);
+    const double rad = static_cast<double>(dice.below(628)) / 100,
+                 size = 1 + static_cast<double>(dice.below(50));
+    const double c = size * std::cos(rad), s = size * std::sin(rad);
+    for (Stroke& stroke : drawn)
         for (Vec2* end : {&stroke.from, &stroke.to})
             *end = {c * end->x - s * end->y + 17, s * end->x + c * end->y - 5};
     const std::clock_t begun = std::clock();
@@ -301,48 +318,82 @@ void study(std::uint64_t seed, std::uint64_t number, double seconds) {
     control.work = &work;
     std::optional<FoundGrammar> found;
     double angle_deg = 0;
-    std::string problem;
+    std::string text;
     try {
-        WorkMeter meter(control, "search", 4096, 4e-8);
-        for (const StrokeGraph& graph : stroke_graphs(shuffled, 0.01, problem)) {
+        WorkMeter meter(control, "search", 4096, seconds_of_unfolded_module);
+        for (const StrokeGraph& graph : stroke_graphs(drawn, 0.01, text)) {
             angle_deg = graph.angle_deg;
             found = find_grammar(graph, meter, {});
             if (found) break;
         }
     } catch (const OutOfWork&) {
-        problem = "work";
+        text = "out of work";
     }
     const double taken = static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
     bool same = false, deeper = false;
-    std::string text = problem;
-    std::size_t size_found = 0;
+    std::size_t letters = 0;
     if (found) {
         const Truth again = as_letters(*found, angle_deg);
         text = rules_text(again);
-        size_found = letters_of(again);
-        const auto word = word_after(again, again.steps, 10 * most_letters);
-        same = word && Comparison(drawn).equals(drawing_of(again, *word), truth.angle_deg);
-        const auto next = word_after(truth, truth.steps + 1, 400 * most_letters);
-        const Strokes next_drawn = next ? drawing_of(truth, *next) : Strokes();
+        letters = letters_of(again);
+        const auto word = word_after(again, again.steps, 100 * most_letters);
+        same = word && Comparison(truth).equals(drawing_of(again, *word), angle_deg);
+        const std::optional<Strokes> next = outcome.deeper();
+        // A found rule may be a root of the true one: then one true step is several.
         for (unsigned more = 1; more <= 3 && next && !deeper; ++more) {
             const auto other = word_after(again, again.steps + more, 800 * most_letters);
             if (!other) break;
-            deeper = Comparison(next_drawn).equals(drawing_of(again, *other), truth.angle_deg);
+            deeper = Comparison(*next).equals(drawing_of(again, *other), angle_deg);
         }
     }
-    std::printf("%llu\t%s\t%zu\t%zu\t%zu\t%d\t%d\t%.2f\t%s\t%s\n", static_cast<unsigned long long>(number),
-                truth.kind.c_str(), drawn.size(), letters_of(truth), size_found, same, deeper, taken,
-                rules_text(truth).c_str(), text.c_str());
+    std::printf("%s\t%s\t%zu\t%zu\t%zu\t%d\t%d\t%.2f\t%s\t%s\n", outcome.name.c_str(), outcome.kind.c_str(),
+                truth.size(), outcome.letters, letters, same, deeper, taken, outcome.truth.c_str(),
+                text.c_str());
     std::fflush(stdout);
 }
 
+void study_random(std::uint64_t seed, std::uint64_t number, double seconds) {
+    Dice dice(seed * 1'000'003 + number);
+    const Truth truth = usable_system(dice);
+    const auto deeper = [&]() -> std::optional<Strokes> {
+        const auto next = word_after(truth, truth.steps + 1, 400 * most_letters);
+        if (!next) return std::nullopt;
+        return drawing_of(truth, *next);
+    };
+    study({std::to_string(number), truth.kind, rules_text(truth), 0, letters_of(truth), deeper},
+          drawing_of(truth, *word_after(truth, truth.steps, most_letters)), seconds, dice);
+}
+
+/// A scene's segments are all that is handed over.
+void study_scene(const std::string& path, double seconds) {
+    Dice dice(7);
+    unsigned steps = 0;
+    const auto drawing = [&](unsigned more) {
+        PictureSession session(path);
+        StageOptions options;
+        options.lower.in_place = LowerOptions::InPlace::plant;
+        Compilation compilation;
+        if (!more)
+            if (const auto lowered = session.lowered(options, compilation); lowered && lowered->notes.plant)
+                steps = lowered->notes.plant->steps;
+        options.lower.steps = steps + more;
+        return model_strokes(session, options, compilation);
+    };
+    std::optional<Strokes> drawn = drawing(0);
+    if (!drawn) return static_cast<void>(std::fprintf(stderr, "%s: no drawing\n", path.c_str()));
+    const std::string name = path.substr(path.rfind('/') + 1);
+    study({name, "scene", "", 0, 0, [&] { return drawing(1); }}, std::move(*drawn), seconds, dice);
+}
+
 int run(int argc, char** argv) {
-    if (argc != 5) return std::fprintf(stderr, "infer_bench SEED FIRST COUNT SECONDS\n"), 2;
+    if (argc == 4 && std::string(argv[1]) == "scene") return study_scene(argv[2], std::atof(argv[3])), 0;
+    if (argc != 5)
+        return std::fprintf(stderr, "infer_bench SEED FIRST COUNT SECONDS | scene FILE SECONDS\n"), 2;
     const auto seed = static_cast<std::uint64_t>(std::atoll(argv[1])),
                first = static_cast<std::uint64_t>(std::atoll(argv[2])),
                count = static_cast<std::uint64_t>(std::atoll(argv[3]));
     for (std::uint64_t i = first; i < first + count; ++i)
-        study(seed, i, std::atof(argv[4]));
+        study_random(seed, i, std::atof(argv[4]));
     return 0;
 }
 

@@ -44,7 +44,7 @@ struct PointsSettings {
 struct FitSettings {
     std::size_t most_maps = 8;
     bool similar = false;
-    std::string start; ///< a model, or ""
+    std::string start;               ///< a model, or ""
     std::optional<double> tolerance; ///< of drawings
 };
 

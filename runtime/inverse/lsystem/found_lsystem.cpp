@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <filesystem>
-#include <numbers>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -17,7 +17,6 @@ namespace graftal {
 
 namespace {
 
-constexpr double seconds_of_unfolded_module = 4e-8;
 constexpr double nearest_place = 0.3; ///< units within which the model's ends of strokes find the drawing's
 
 std::string with_digits(double value, int digits) {
@@ -136,15 +135,48 @@ class PlaceFinder {
     std::unordered_multimap<std::uint64_t, std::uint32_t> cells_;
 };
 
-/// Compares what the model draws with the drawing, laid over it at the start.
+using Complex = std::complex<double>;
+
+/// A similarity of the plane, by complex numbers.
+struct Placement {
+    Complex turn, shift;
+    Complex operator()(Vec2 p) const { return turn * Complex(p.x, p.y) + shift; }
+};
+
+/// The similarity that brings the model's ends of strokes nearest to the drawing's, by least squares; the
+/// places that belong together are those that are near each other under the similarity before.
+Placement fitted(const Strokes& drawn, const StrokeGraph& graph, const PlaceFinder& finder,
+                 Placement placement) {
+    Complex from(0), to(0), across(0);
+    double square = 0, count = 0;
+    for (const Stroke& stroke : drawn) {
+        const Complex at = placement(stroke.to);
+        const auto [place, away] = finder.nearest({at.real(), at.imag()});
+        if (away == HUGE_VAL) continue;
+        const Complex p(stroke.to.x, stroke.to.y), q(graph.places[place].x, graph.places[place].y);
+        from += p, to += q, across += std::conj(p) * q, square += std::norm(p), count += 1;
+    }
+    const double spread = square - std::norm(from) / std::max(count, 1.0);
+    if (!(spread > 1e-9)) return placement;
+    const Complex turn = (across - std::conj(from) * to / count) / spread;
+    return {turn, (to - turn * from) / count};
+}
+
+/// Compares what the model draws with the drawing.
 void compare(const Strokes& drawn, const StrokeGraph& graph, const FoundGrammar& grammar,
              FoundLsystem& found) {
     const PlaceFinder finder(graph);
     std::vector<std::uint32_t> left = graph.copies;
-    const auto placed = [&](Vec2 point) { return graph.places[grammar.start] + graph.unit * point; };
+    Placement placement{graph.unit, {graph.places[grammar.start].x, graph.places[grammar.start].y}};
+    for (int i = 0; i < 5; ++i)
+        placement = fitted(drawn, graph, finder, placement);
+    const auto placed = [&](Vec2 point) {
+        const Complex at = placement(point);
+        return finder.nearest({at.real(), at.imag()});
+    };
     for (const Stroke& stroke : drawn) {
-        const auto [from, from_away] = finder.nearest(placed(stroke.from));
-        const auto [to, to_away] = finder.nearest(placed(stroke.to));
+        const auto [from, from_away] = placed(stroke.from);
+        const auto [to, to_away] = placed(stroke.to);
         if (from_away == HUGE_VAL || to_away == HUGE_VAL) continue;
         for (const StrokeWay& way : graph.ways(from)) {
             if (way.to != to || left[way.bundle] == 0) continue;
@@ -201,7 +233,8 @@ std::optional<FoundLsystem> find_lsystem(const FindLsystemOptions& options, cons
                                          Compilation& compilation) {
     StageWork work(options.seconds);
     const Control control{cancel, {}, &work};
-    const std::optional<Strokes> strokes = read_drawing(options.drawing, options.compile, {cancel}, compilation);
+    const std::optional<Strokes> strokes =
+        read_drawing(options.drawing, options.compile, {cancel}, compilation);
     if (!strokes) return std::nullopt;
     const auto refuse = [&](std::string problem, const char* hint) {
         compilation.diagnostics.error({}, std::move(problem)).with_hint(hint);

@@ -10,11 +10,12 @@
 namespace graftal {
 
 struct FindLsystemOptions {
-    std::string drawing;     ///< a file (drawing_file.h)
-    double tolerance = 0.01; ///< ends of lines that are no farther apart meet, as a share of the shortest line
-    double seconds = 30;     ///< of one processor, by counted work
-    StageOptions compile;    ///< of a drawing that is a model
-    std::string made_by;     ///< the command line, for the model's comment
+    std::string drawing; ///< a file (drawing_file.h)
+    double tolerance =
+        0.01;             ///< ends of lines that are no farther apart meet, as a share of the shortest line
+    double seconds = 30;  ///< of one processor, by counted work
+    StageOptions compile; ///< of a drawing that is a model
+    std::string made_by;  ///< the command line, for the model's comment
     std::function<void(double share, int round)> on_progress;
 };
 

@@ -11,7 +11,6 @@ constexpr int most_rounds = 9;
 constexpr int rich_round = 2; ///< the first with rich systems
 constexpr std::uint64_t first_modules = 250'000, rich_modules = 1'200, least_modules = 300;
 constexpr std::size_t least_rich_size = 8;
-constexpr std::size_t first_starts = 2; ///< in the first round; each has 64 times as many
 
 /// Modules for a growth in a round, at all starts together: more for the smallest of the plain systems.
 std::uint64_t modules_for(std::size_t place, bool rich, int round) {
@@ -39,13 +38,21 @@ class GrammarSearch {
     }
 
   private:
-    static constexpr std::uint64_t never = UINT64_MAX;
+    /// What became of a growth so far.
+    struct Trial {
+        std::uint64_t modules = 0; ///< that it has had in a round
+        std::uint32_t start = 0;   ///< the next to be tried
+        bool gave_up = false;      ///< at a start, for want of modules
+        bool done = false;         ///< it has no system
+    };
 
     void try_round(std::size_t from, int round, const std::function<void(double, int)>& on_progress) {
         for (std::size_t i = from; i < growths_.size(); ++i) {
-            if (on_progress) on_progress(static_cast<double>(i) / static_cast<double>(growths_.size()), round);
+            if (on_progress)
+                on_progress(static_cast<double>(i) / static_cast<double>(growths_.size()), round);
             const std::uint64_t modules = modules_for(i, i >= plain_, round);
-            if (open_[i] < modules && !too_large(growths_[i])) try_growth(i, modules, round);
+            if (trials_[i].modules < modules && !trials_[i].done && !too_large(growths_[i]))
+                try_growth(i, modules);
         }
     }
 
@@ -57,19 +64,26 @@ class GrammarSearch {
     void add(bool rich) {
         const std::vector<Growth> more = growths(graph_.strokes, rich, graph_.sized(), meter_);
         growths_.insert(growths_.end(), more.begin(), more.end());
-        open_.resize(growths_.size(), 0);
+        trials_.resize(growths_.size());
     }
 
-    void try_growth(std::size_t number, std::uint64_t most_modules, int round) {
-        const std::size_t starts = std::min(graph_.starts.size(), first_starts << std::min(6 * round, 40));
-        const std::uint64_t part = std::max(least_modules, most_modules / std::min<std::size_t>(starts, 16));
-        open_[number] = starts == graph_.starts.size() ? never : most_modules;
-        for (std::size_t i = 0; i < starts; ++i) {
-            std::optional<FoundGrammar> found = unfolding_.find(growths_[number], graph_.starts[i], part);
-            if (unfolding_.gave_up()) open_[number] = most_modules;
-            if (!found) continue;
-            best_ = std::move(found);
-            return;
+    /// Tries a growth at as many starts as the modules suffice for; the next round goes on from there.
+    void try_growth(std::size_t number, std::uint64_t most_modules) {
+        const auto starts = static_cast<std::uint32_t>(graph_.starts.size());
+        const std::uint64_t part = std::max(least_modules, most_modules / std::min(starts, 16u));
+        Trial& trial = trials_[number];
+        trial.modules = most_modules;
+        for (std::uint64_t spent = 0; spent < most_modules && !trial.done; spent += unfolding_.modules()) {
+            std::optional<FoundGrammar> found =
+                unfolding_.find(growths_[number], graph_.starts[trial.start], part);
+            trial.gave_up = trial.gave_up || unfolding_.gave_up();
+            if (found) best_ = std::move(found), trial.done = true;
+            if (trial.done) return;
+            if (++trial.start < starts) continue;
+            trial.done = !trial.gave_up;
+            trial.start = 0;
+            trial.gave_up = false;
+            break;
         }
     }
 
@@ -78,7 +92,7 @@ class GrammarSearch {
     Unfolding unfolding_;
     std::vector<Growth> growths_; ///< plain ones, then rich ones
     std::size_t plain_ = SIZE_MAX;
-    std::vector<std::uint64_t> open_; ///< modules that each has had; never: it has no system
+    std::vector<Trial> trials_;
     std::optional<FoundGrammar> best_;
 };
 

@@ -275,6 +275,7 @@ class StrokeGraphBuilder {
             const std::int32_t direction = followed_.empty() ? grid.units(degrees_[i]) : followed_[i];
             links.push_back({ends_[2 * i], ends_[2 * i + 1], direction, classes[i]});
         }
+        turn_by_mean(graph, links);
         std::ranges::sort(links, {}, [](const Link& link) {
             return std::tuple(link.from, link.direction, link.to, link.length);
         });
@@ -293,6 +294,14 @@ class StrokeGraphBuilder {
         std::partial_sum(graph.first_way_.begin(), graph.first_way_.end(), graph.first_way_.begin());
     }
 
+    /// Takes for direction 0 the mean of what all strokes say of it.
+    template<typename Links> void turn_by_mean(StrokeGraph& graph, const Links& links) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < links.size(); ++i)
+            sum += wrapped_deg(degrees_[i] - links[i].direction * graph.angle_deg);
+        graph.first_deg += sum / static_cast<double>(links.size());
+    }
+
     /// A place from which ways lead to every other, if there is one: the last that a search begins at.
     static std::uint32_t mother_place(const StrokeGraph& graph) {
         std::vector<bool> seen(graph.places.size());
@@ -309,7 +318,8 @@ class StrokeGraphBuilder {
     }
 
     template<typename Neighbours>
-    static std::size_t visit_from(std::uint32_t place, std::vector<bool>& seen, const Neighbours& neighbours) {
+    static std::size_t visit_from(std::uint32_t place, std::vector<bool>& seen,
+                                  const Neighbours& neighbours) {
         std::vector<std::uint32_t> waiting = {place};
         seen[place] = true;
         std::size_t count = 0;
@@ -326,7 +336,8 @@ class StrokeGraphBuilder {
         return count;
     }
 
-    /// The places that lead to all others; of a drawing in one sweep, the one where more strokes begin than end.
+    /// The places that lead to all others; of a drawing in one sweep, the one where more strokes begin than
+    /// end.
     void find_starts(StrokeGraph& graph) const {
         std::vector<std::int64_t> surplus(graph.places.size());
         std::vector<std::vector<std::uint32_t>> before(graph.places.size());
@@ -346,11 +357,11 @@ class StrokeGraphBuilder {
                 next(way.to);
         });
         if (count < graph.places.size()) return;
-        visit_from(mother, leads, [&](std::uint32_t at, const auto& next) {
-            std::ranges::for_each(before[at], next);
-        });
+        visit_from(mother, leads,
+                   [&](std::uint32_t at, const auto& next) { std::ranges::for_each(before[at], next); });
         for (std::uint32_t place = 0; place < leads.size(); ++place)
-            if (leads[place] && (graph.branches || sum == 0 || surplus[place] > 0)) graph.starts.push_back(place);
+            if (leads[place] && (graph.branches || sum == 0 || surplus[place] > 0))
+                graph.starts.push_back(place);
         std::ranges::stable_sort(graph.starts, [&](std::uint32_t a, std::uint32_t b) {
             return std::pair(a != ends_.front(), -surplus[a]) < std::pair(b != ends_.front(), -surplus[b]);
         });

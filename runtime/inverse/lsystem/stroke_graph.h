@@ -32,12 +32,12 @@ class StrokeGraph {
     std::vector<std::uint32_t> copies; ///< of each bundle
     std::vector<std::uint8_t> classes; ///< of each bundle: its length is unit * factor^class
     std::uint64_t strokes = 0;
-    double unit = 1;     ///< length of the longest class
-    double factor = 1;   ///< from a class to the next, below 1 where there are several
+    double unit = 1;   ///< length of the longest class
+    double factor = 1; ///< from a class to the next, below 1 where there are several
     double angle_deg = 90;
-    double first_deg = 0;        ///< direction 0, from the x axis
-    std::int32_t directions = 0; ///< in a full circle; 0: they never come back
-    bool branches = false;       ///< no way along the strokes takes each of them once
+    double first_deg = 0;              ///< direction 0, from the x axis
+    std::int32_t directions = 0;       ///< in a full circle; 0: they never come back
+    bool branches = false;             ///< no way along the strokes takes each of them once
     std::vector<std::uint32_t> starts; ///< places where the drawing may begin, the likely ones first
 
     std::span<const StrokeWay> ways(std::uint32_t place) const {

@@ -25,8 +25,12 @@ constexpr int most_svg_depth = 100;
 
 PlaneMap composed(const PlaneMap& outer, const PlaneMap& inner) {
     const Vec2 origin = outer({inner.e, inner.f});
-    return {outer.a * inner.a + outer.b * inner.c, outer.a * inner.b + outer.b * inner.d,
-            outer.c * inner.a + outer.d * inner.c, outer.c * inner.b + outer.d * inner.d, origin.x, origin.y};
+    return {outer.a * inner.a + outer.b * inner.c,
+            outer.a * inner.b + outer.b * inner.d,
+            outer.c * inner.a + outer.d * inner.c,
+            outer.c * inner.b + outer.d * inner.d,
+            origin.x,
+            origin.y};
 }
 
 /// Reads numbers and words of attributes one after another.

@@ -7,7 +7,7 @@ namespace graftal {
 
 namespace {
 
-constexpr unsigned most_depth = 3000; ///< guesses within guesses
+constexpr unsigned most_depth = 3000;         ///< guesses within guesses
 constexpr std::uint8_t most_brackets = 4;     ///< of a rule
 constexpr std::uint8_t most_open = 2;         ///< brackets within brackets
 constexpr std::int32_t most_endless_turn = 6; ///< in angles, where directions never come back
@@ -260,9 +260,9 @@ bool Unfolding::guess_token(const State& state) {
     const bool after_open = !rule.tokens.empty() && rule.tokens.back().mark == Mark::open;
     const bool after_close = !rule.tokens.empty() && rule.tokens.back().mark == Mark::close;
     const bool draws_now = frame.level == 1;
-    const bool can_draw = !draws_now || std::ranges::any_of(graph_.ways(state.place), [&](const StrokeWay& way) {
-        return left_[way.bundle] > 0;
-    });
+    const bool can_draw =
+        !draws_now || std::ranges::any_of(graph_.ways(state.place),
+                                          [&](const StrokeWay& way) { return left_[way.bundle] > 0; });
     if (left > 0 && can_draw) {
         const bool is_fixed = rule.drawn == 0 && fixes_turn(number);
         const Number turn = is_fixed ? no_turn : new_turn();
@@ -393,7 +393,8 @@ bool Unfolding::guess_turn(const State& state) {
     const auto [turn, factor] = heading.terms[chosen];
     Heading rest; // what the turn leaves
     for (std::uint8_t i = 0; i < heading.count; ++i)
-        if (i != chosen) rest.terms[rest.count++] = {heading.terms[i].turn, -factor * heading.terms[i].factor};
+        if (i != chosen)
+            rest.terms[rest.count++] = {heading.terms[i].turn, -factor * heading.terms[i].factor};
     for (std::int32_t& direction : open)
         direction = reduced(factor * (direction - heading.known));
     std::ranges::sort(open, {}, [](std::int32_t x) { return std::pair(std::abs(x), -x); });
@@ -504,7 +505,8 @@ RuleWord Unfolding::word_of(const Rule& rule) const {
         if (at_end) break;
         const Token& token = rule.tokens[i];
         const std::int32_t letter = token.letter == any_letter ? 0 : token.letter;
-        word.push_back({brackets[static_cast<std::size_t>(token.mark)], token.mark == Mark::letter ? letter : 0});
+        word.push_back(
+            {brackets[static_cast<std::size_t>(token.mark)], token.mark == Mark::letter ? letter : 0});
     }
     return word;
 }

@@ -148,13 +148,13 @@ class Unfolding {
     const StrokeGraph& graph_;
     WorkMeter& meter_;
     Growth growth_;
-    std::vector<Rule> rules_;         ///< of the letters, and the axiom
+    std::vector<Rule> rules_; ///< of the letters, and the axiom
     struct Turn {
         bool known = false;
         Heading value;
     };
-    std::vector<Turn> turns_;         ///< by number
-    std::vector<std::uint32_t> left_; ///< copies of each bundle that are not drawn yet
+    std::vector<Turn> turns_;                     ///< by number
+    std::vector<std::uint32_t> left_;             ///< copies of each bundle that are not drawn yet
     std::vector<std::uint32_t> leaving_, coming_; ///< of each place: strokes that are not drawn yet
     struct Taken {
         std::uint32_t bundle = 0, from = 0, to = 0;

@@ -170,10 +170,7 @@ constexpr const char* target_help =
 
 /// The picture of a target, and which of its pixels are meant.
 void add_target(CLI::App& app, Options& options, const std::string& help) {
-    app.add_option(
-           "TARGET", options.points.target, help)
-        ->required()
-        ->type_name("");
+    app.add_option("TARGET", options.points.target, help)->required()->type_name("");
     add_value(app, "--threshold", "T",
               "Pixels darker than this, or at least this opaque, belong to the target (default 0.5)",
               "a number from 0 to 1", parse_share,
@@ -242,9 +239,11 @@ std::string complete_fit(Options& options) {
     if (output.empty()) output = model_stem(options.points.target) + ending;
     if (output != "-" && !output.ends_with(ending))
         return fmt::format("'{}': the name of the model must end in {}", output, ending);
-    if (output == options.points.target) return fmt::format("'{}' is the drawing: name another file by -o", output);
+    if (output == options.points.target)
+        return fmt::format("'{}' is the drawing: name another file by -o", output);
     if (!draws && options.fit.tolerance) return "--tolerance is for drawings: .svg, .csv, .txt and .lsys";
-    if (draws && (options.fit.similar || !options.fit.start.empty() || options.fit.most_maps != FitSettings().most_maps))
+    if (draws && (options.fit.similar || !options.fit.start.empty() ||
+                  options.fit.most_maps != FitSettings().most_maps))
         return "--maps, --similar and --start are for pictures, and not for drawings";
     if (output == "-" && options.json)
         return "--json prints where '-o -' writes the model: leave one of them out";

@@ -17,7 +17,7 @@ double Haze::length_of_share(Vec3 from, Vec3 direction, double length, double sh
     const double wanted = share * (1 - left_after(from, direction, length));
     if (is_even()) return std::min(length, -distance * std::log1p(-wanted));
     double near = 0, far = length;
-    constexpr int halvings = 40;
+    constexpr int halvings = 50;
     for (int i = 0; i < halvings; ++i) {
         const double middle = 0.5 * (near + far);
         (1 - left_after(from, direction, middle) < wanted ? near : far) = middle;

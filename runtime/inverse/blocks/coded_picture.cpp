@@ -22,7 +22,7 @@ struct LevelError {
     double rms = 0, most = 0;
 };
 
-/// Of the pixels of a plane from those of another, which may have a margin.
+/// Distances of a plane's pixels from those of another, which may have a margin.
 LevelError error_of(const LevelPlane& plane, const LevelPlane& other) {
     double sum = 0;
     LevelError error;

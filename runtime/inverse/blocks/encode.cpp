@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <utility>
 
 #include <Eigen/Core>
+
+#include "runtime/inverse/blocks/decode.h"
 
 namespace graftal {
 
@@ -28,6 +29,7 @@ constexpr double chroma_weight = 2;
 /// Seconds of one processor.
 constexpr double product_price = 6e-9; ///< of a range in one isometry and a domain
 constexpr double pixel_price = 4e-9;   ///< of a candidate
+constexpr double measuring_rounds = 30;
 
 /// A map, and its squared error over the block.
 struct Match {
@@ -245,12 +247,9 @@ class PlaneSearch {
         for (int i = 0; i < count; ++i) {
             const BlockSums& of_range = sums[static_cast<std::size_t>(i)];
             Match best = flat_match(range(i), of_range);
-            const double address = std::log2(std::max(1u, layer.table.pool().count()));
-            const double more = lambda_ * (map_bits + address - flat_bits);
             lists[static_cast<std::size_t>(i)].for_each([&](std::uint32_t domain, int isometry) {
                 const Match match = map_match(range(i), of_range, layer.table, domain, isometry);
-                const double limit = best.error + (best.map.slope == 0 ? -more : 0);
-                if (match.map.slope != 0 && match.error < limit) best = match;
+                if (match.map.slope != 0 && cost(layer, match) < cost(layer, best)) best = match;
             });
             layer.matches[static_cast<std::size_t>(row * layer.columns + first + i)] = best;
         }
@@ -284,13 +283,10 @@ class PlaneSearch {
         return lists;
     }
 
-    double cost(const Match& match) const {
-        const double address =
-            std::log2(std::max(1u, layers_[layer_of(match.map.side)].table.pool().count()));
-        return match.error + lambda_ * (match.map.slope == 0 ? flat_bits : map_bits + address);
-    }
-    static std::size_t layer_of(int side) {
-        return static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(side / least_side)));
+    double cost(const BlockLayer& layer, const Match& match) const {
+        const double bits =
+            match.map.slope == 0 ? flat_bits : map_bits + std::log2(layer.table.pool().count());
+        return match.error + lambda_ * bits;
     }
 
     /// Appends the cheaper of a square's block and its quarters; returns what it costs.
@@ -303,17 +299,17 @@ class PlaneSearch {
         const bool whole = grid_.holds(x, y, layer.side);
         if (depth == 0) {
             blocks.push_back(own().map);
-            return cost(own());
+            return cost(layer, own());
         }
         const std::size_t before = blocks.size();
         double divided = whole ? lambda_ * division_bits : 0;
         for (int quarter = 0; quarter < 4; ++quarter)
             divided +=
                 settle(depth - 1, x + quarter % 2 * layer.side / 2, y + quarter / 2 * layer.side / 2, blocks);
-        if (!whole || cost(own()) > divided) return divided;
+        if (!whole || cost(layer, own()) > divided) return divided;
         blocks.resize(before);
         blocks.push_back(own().map);
-        return cost(own());
+        return cost(layer, own());
     }
 
     PlaneGrid grid_;
@@ -331,8 +327,10 @@ double layer_seconds(const PlaneGrid& grid, int side, int bits) {
                      static_cast<double>(candidates * static_cast<std::size_t>(side * side)) * pixel_price);
 }
 
+/// Work of the search, and of decoding the luma to say how good it is.
 double search_seconds(const BlockPicture& picture, int bits) {
-    double seconds = 0;
+    double seconds =
+        measuring_rounds * static_cast<double>(picture.width) * picture.height / decoded_pixels_a_second;
     for (std::size_t i = 0; i < picture.plane_count(); ++i)
         for (int side = least_side; side <= largest_side; side *= 2)
             seconds += layer_seconds(picture.grid_of(i), side, bits);

@@ -10,7 +10,7 @@
 namespace graftal {
 
 struct BlockCoding {
-    double tolerance = 8; ///< the root mean square error that is aimed at, in levels
+    double tolerance = 8; ///< squared: the squared error, in levels, that a bit has to save
     double seconds = 30;  ///< of one processor, by counted work
 };
 

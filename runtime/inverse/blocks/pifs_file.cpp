@@ -21,7 +21,7 @@ constexpr unsigned mirror_code = 8, slope_code = 16;
 /// Bytes of the blocks in memory, at most, while they are read: each of 4 by 4 pixels, in all planes.
 constexpr std::uint64_t bytes_a_pixel = 12;
 
-/// What is wrong with a file, in words.
+/// The fault of a file, in words.
 struct PifsFault {
     std::string text;
 };

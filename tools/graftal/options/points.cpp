@@ -214,8 +214,8 @@ void add_fit_options(CLI::App& app, Options& options) {
         blocks->excludes(other);
     add_value(
         app, "--tolerance", "LEVELS",
-        "With --blocks: error to aim at, root mean square in levels of 255; less makes larger files (default "
-        "8)",
+        "With --blocks: error that photographs then have, about, root mean square in levels of 255; less "
+        "makes larger files (default 8)",
         "a number from 0 to 255",
         [](const std::string& text) {
             const std::optional<double> levels = parse_at_least(text, 0);

@@ -148,6 +148,9 @@ void note_lacks(const CompiledModel& model, Diagnostics& diagnostics) {
             .note(span, "POV-Ray's picture has no light from surface to surface: each material's 'ambient' "
                         "stands for it")
             .with_hint("use '--engine native' to follow the 'bounces' of the sky");
+    if (view.sun_of_haze())
+        diagnostics.note(span, "POV-Ray's picture shows haze without the sun's shafts")
+            .with_hint("use '--engine native' to draw the 'sun' of the haze");
     if (shows_blur(graph, view))
         diagnostics.note(span, "POV-Ray's picture shows all mirrors and glass sharp")
             .with_hint("use '--engine native' to draw the 'blur' of materials");

@@ -142,7 +142,8 @@ std::uint64_t decoding_bytes(const BlockPicture& picture, int width, int height)
     for (std::size_t i = 0; i < picture.planes.size(); ++i)
         margins = std::max(margins, iteration_of(picture, i, width, height).samples());
     const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    return sample * (2 * margins + (picture.planes.size() + 4) * pixels);
+    const std::uint64_t planes = picture.planes.size() * pixels;
+    return sample * (planes + std::max(2 * margins, planes)); // after the iteration: the picture
 }
 
 PicturePlanes decode_blocks(const BlockPicture& picture, int width, int height, const Workers& workers,

@@ -84,8 +84,10 @@ struct BlockView {
         std::array<float, features> values{};
         const int width = side / cells;
         for (int v = 0; v < side; ++v)
-            for (int u = 0; u < side; ++u)
-                values[static_cast<std::size_t>(v / width * cells + u / width)] += at(u, v);
+            for (int u = 0; u < side; ++u) {
+                const int cell = v / width * cells + u / width;
+                values[static_cast<std::size_t>(cell)] += at(u, v);
+            }
         for (float& value : values)
             value = (value - static_cast<float>(sums.levels / features)) / static_cast<float>(width);
         return values;
@@ -201,6 +203,10 @@ struct BlockLayer {
     DomainTable table;
     std::vector<Match> matches;
 
+    std::size_t index(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+               static_cast<std::size_t>(column);
+    }
     int jobs_a_row() const { return (columns + ranges_a_job - 1) / ranges_a_job; }
     std::uint64_t jobs() const {
         return static_cast<std::uint64_t>(jobs_a_row()) * static_cast<std::uint64_t>(rows);
@@ -251,7 +257,7 @@ class PlaneSearch {
                 const Match match = map_match(range(i), of_range, layer.table, domain, isometry);
                 if (match.map.slope != 0 && cost(layer, match) < cost(layer, best)) best = match;
             });
-            layer.matches[static_cast<std::size_t>(row * layer.columns + first + i)] = best;
+            layer.matches[layer.index(first + i, row)] = best;
         }
     }
 
@@ -294,7 +300,7 @@ class PlaneSearch {
         const BlockLayer& layer = layers_[static_cast<std::size_t>(depth)];
         if (x >= grid_.width || y >= grid_.height) return 0;
         const auto own = [&]() -> const Match& {
-            return layer.matches[static_cast<std::size_t>(y / layer.side * layer.columns + x / layer.side)];
+            return layer.matches[layer.index(x / layer.side, y / layer.side)];
         };
         const bool whole = grid_.holds(x, y, layer.side);
         if (depth == 0) {

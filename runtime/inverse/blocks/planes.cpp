@@ -12,7 +12,7 @@ namespace graftal {
 namespace {
 
 /// Bytes for each pixel: the planes, their coding, and their decoding to measure the error.
-constexpr std::uint64_t bytes_a_coded_pixel = 36;
+constexpr std::uint64_t bytes_a_coded_pixel = 26;
 constexpr float red_share = 0.299f, green_share = 0.587f, blue_share = 0.114f;
 /// Colours less red, or blue, than luma and more, in levels of a chroma.
 constexpr float red_span = 2 * (1 - red_share), blue_span = 2 * (1 - blue_share);

@@ -271,7 +271,7 @@ class BlocksTask : public ::testing::Test {
 TEST_F(BlocksTask, MemoryRefusesBeforehand) {
     task_.memory_bytes = 1 << 20;
     EXPECT_FALSE(code_picture(path_, 8, task_, {}, compilation_));
-    EXPECT_THAT(message(), HasSubstr("has 300x200 pixels: to code them takes 3 MiB, and 1 are allowed"));
+    EXPECT_THAT(message(), HasSubstr("has 300x200 pixels: to code them takes 2 MiB, and 1 are allowed"));
     EXPECT_THAT(message(), HasSubstr("--memory"));
 }
 

@@ -45,6 +45,8 @@ struct FitSettings {
     std::size_t most_maps = 8;
     bool similar = false;
     std::string start; ///< a model, or ""
+    bool blocks = false;
+    double tolerance = 8; ///< with `blocks`, in levels of 255
 };
 
 /// Options of `studio`.

@@ -63,6 +63,7 @@ std::string fit_text(const Options& options, const FoundModel& found) {
 } // namespace
 
 int run_fit(const Options& options) {
+    if (options.fit.blocks) return run_fit_blocks(options);
     ProgressBar bar(!options.quiet);
     FindOptions find = find_options(options);
     find.on_progress = [&](const SearchProgress& progress) {

@@ -191,8 +191,9 @@ void add_collage_options(CLI::App& app, Options& options) {
 void add_fit_options(CLI::App& app, Options& options) {
     FitSettings& fit = options.fit;
     add_target(app, options);
-    app.add_option("-o,--output", options.render.output,
-                   "Model to write, .rifs (default: TARGET's name + .rifs, in this folder)")
+    app.add_option(
+           "-o,--output", options.render.output,
+           "Model to write, .rifs, or .pifs with --blocks (default: TARGET's name + that, in this folder)")
         ->type_name("FILE");
     add_value(
         app, "--maps", "N", "Most maps of the system (default 8)", "a whole number from 2 to 24",
@@ -205,6 +206,23 @@ void add_fit_options(CLI::App& app, Options& options) {
            "Model to begin with: a flat iterated function system in the frame in which graftal writes "
            "them")
         ->type_name("MODEL");
+    CLI::Option* const blocks = app.add_flag(
+        "--blocks", fit.blocks,
+        "Code the whole picture, grey or in colour, by blocks that are copies of larger ones: a .pifs "
+        "file, which 'graftal render' decodes at any size");
+    for (const char* const other : {"--threshold", "--light", "--maps", "--similar", "--start"})
+        blocks->excludes(other);
+    add_value(
+        app, "--tolerance", "LEVELS",
+        "With --blocks: error that photographs then have, about, root mean square in levels of 255; less "
+        "makes larger files (default 8)",
+        "a number from 0 to 255",
+        [](const std::string& text) {
+            const std::optional<double> levels = parse_at_least(text, 0);
+            return levels && *levels <= 255 ? levels : std::nullopt;
+        },
+        [&fit](double levels) { fit.tolerance = levels; })
+        ->needs(blocks);
     add_work(app, options,
              "Limit of the search, roughly in seconds of one processor, by counted work (default 30)");
     app.add_flag("--json", options.json, "Print one JSON object on standard output");
@@ -216,14 +234,17 @@ void add_fit_options(CLI::App& app, Options& options) {
         "  graftal fit leaf.png                                   # makes leaf.rifs\n"
         "  graftal fit leaf.png --maps 4 --work 120 --seed 7 -o other.rifs\n"
         "  graftal fit leaf.png --start leaf.rifs                 # goes on from there\n"
-        "  graftal points leaf.rifs --size 400x400 -o again.png   # the target's size gives its frame");
+        "  graftal points leaf.rifs --size 400x400 -o again.png   # the target's size gives its frame\n"
+        "  graftal fit --blocks photo.png --tolerance 5           # makes photo.pifs\n"
+        "  graftal render photo.pifs --size 2048x2048");
 }
 
 std::string complete_fit(Options& options) {
     std::string& output = options.render.output;
-    if (output.empty()) output = model_stem(options.points.target) + ".rifs";
-    if (output != "-" && !output.ends_with(".rifs"))
-        return fmt::format("'{}': the name of the model must end in .rifs", output);
+    const char* const ending = options.fit.blocks ? ".pifs" : ".rifs";
+    if (output.empty()) output = model_stem(options.points.target) + ending;
+    if (output != "-" && !output.ends_with(ending))
+        return fmt::format("'{}': the name of the model must end in {}", output, ending);
     if (output == "-" && options.json)
         return "--json prints where '-o -' writes the model: leave one of them out";
     return {};

@@ -44,8 +44,9 @@ struct PointsSettings {
 struct FitSettings {
     std::size_t most_maps = 8;
     bool similar = false;
-    std::string start;               ///< a model, or ""
-    std::optional<double> tolerance; ///< of drawings
+    std::string start; ///< a model, or ""
+    bool blocks = false;
+    std::optional<double> tolerance; ///< with `blocks`, in levels of 255; of drawings, as a share of a line
 };
 
 /// Options of `studio`.

@@ -115,6 +115,7 @@ int run_fit_lsystem(const Options& options) {
 } // namespace
 
 int run_fit(const Options& options) {
+    if (options.fit.blocks) return run_fit_blocks(options);
     if (is_drawing_name(options.points.target)) return run_fit_lsystem(options);
     ProgressBar bar(!options.quiet);
     FindOptions find = find_options(options);

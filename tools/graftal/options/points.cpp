@@ -28,12 +28,6 @@ std::optional<std::uint64_t> parse_points(const std::string& text) {
     return static_cast<std::uint64_t>(*value);
 }
 
-/// A share above 0, up to a fifth.
-std::optional<double> parse_tolerance(const std::string& text) {
-    const std::optional<double> value = parse_number(text);
-    return value && *value >= 1e-6 && *value <= 0.2 ? value : std::nullopt;
-}
-
 /// An option whose value is a number above 0.
 void add_positive(CLI::App& app, const std::string& name, const std::string& help, double& value) {
     const auto set = [name, &value](const std::string& text) {
@@ -199,13 +193,9 @@ void add_fit_options(CLI::App& app, Options& options) {
     add_target(app, options,
                std::string(target_help) + "; or a drawing (.svg, .csv, .txt, .lsys), for an L-system");
     app.add_option("-o,--output", options.render.output,
-                   "Model to write: .rifs, or .lsys for a drawing (default: TARGET's name, in this folder)")
+                   "Model to write: .rifs, .lsys for a drawing, or .pifs with --blocks (default: TARGET's name + "
+                   "that, in this folder)")
         ->type_name("FILE");
-    add_value(app, "--tolerance", "SHARE",
-              "Ends of a drawing's lines meet where they are no farther apart, as a share of the shortest "
-              "line (default 0.01)",
-              "a number from 1e-6 to 0.2", parse_tolerance,
-              [&fit](double tolerance) { fit.tolerance = tolerance; });
     add_value(
         app, "--maps", "N", "Most maps of the system (default 8)", "a whole number from 2 to 24",
         [](const std::string& text) { return parse_whole(text, 2, 24); },
@@ -217,6 +207,23 @@ void add_fit_options(CLI::App& app, Options& options) {
            "Model to begin with: a flat iterated function system in the frame in which graftal writes "
            "them")
         ->type_name("MODEL");
+    CLI::Option* const blocks = app.add_flag(
+        "--blocks", fit.blocks,
+        "Code the whole picture, grey or in colour, by blocks that are copies of larger ones: a .pifs "
+        "file, which 'graftal render' decodes at any size");
+    for (const char* const other : {"--threshold", "--light", "--maps", "--similar", "--start"})
+        blocks->excludes(other);
+    add_value(
+        app, "--tolerance", "T",
+        "With --blocks: error that photographs then have, about, root mean square in levels of 255; less "
+        "makes larger files (default 8). Of drawings: ends of lines meet where they are no farther apart, as "
+        "a share of the shortest line (default 0.01)",
+        "a number from 0 to 255",
+        [](const std::string& text) {
+            const std::optional<double> levels = parse_at_least(text, 0);
+            return levels && *levels <= 255 ? levels : std::nullopt;
+        },
+        [&fit](double levels) { fit.tolerance = levels; });
     add_work(app, options,
              "Limit of the search, roughly in seconds of one processor, by counted work (default 30)");
     app.add_flag("--json", options.json, "Print one JSON object on standard output");
@@ -229,22 +236,29 @@ void add_fit_options(CLI::App& app, Options& options) {
         "  graftal fit leaf.png --maps 4 --work 120 --seed 7 -o other.rifs\n"
         "  graftal fit leaf.png --start leaf.rifs                 # goes on from there\n"
         "  graftal fit curve.svg                                  # an L-system: makes curve.lsys\n"
-        "  graftal points leaf.rifs --size 400x400 -o again.png   # the target's size gives its frame");
+        "  graftal points leaf.rifs --size 400x400 -o again.png   # the target's size gives its frame\n"
+        "  graftal fit --blocks photo.png --tolerance 5           # makes photo.pifs\n"
+        "  graftal render photo.pifs --size 2048x2048");
 }
 
 std::string complete_fit(Options& options) {
     std::string& output = options.render.output;
     const bool draws = is_drawing_name(options.points.target);
-    const std::string ending = draws ? ".lsys" : ".rifs";
+    const char* const ending = options.fit.blocks ? ".pifs" : draws ? ".lsys" : ".rifs";
     if (output.empty()) output = model_stem(options.points.target) + ending;
     if (output != "-" && !output.ends_with(ending))
         return fmt::format("'{}': the name of the model must end in {}", output, ending);
-    if (output == options.points.target)
-        return fmt::format("'{}' is the drawing: name another file by -o", output);
-    if (!draws && options.fit.tolerance) return "--tolerance is for drawings: .svg, .csv, .txt and .lsys";
-    if (draws && (options.fit.similar || !options.fit.start.empty() ||
-                  options.fit.most_maps != FitSettings().most_maps))
-        return "--maps, --similar and --start are for pictures, and not for drawings";
+    if (draws && !options.fit.blocks) {
+        if (output == options.points.target)
+            return fmt::format("'{}' is the drawing: name another file by -o", output);
+        if (options.fit.similar || !options.fit.start.empty() || options.fit.most_maps != FitSettings().most_maps)
+            return "--maps, --similar and --start are for pictures, and not for drawings";
+        const double tolerance = options.fit.tolerance.value_or(0.01);
+        if (tolerance < 1e-6 || tolerance > 0.2)
+            return "--tolerance: for a drawing, it is a number from 1e-6 to 0.2";
+    } else if (options.fit.tolerance && !options.fit.blocks) {
+        return "--tolerance needs --blocks, or a drawing: .svg, .csv, .txt or .lsys";
+    }
     if (output == "-" && options.json)
         return "--json prints where '-o -' writes the model: leave one of them out";
     return {};

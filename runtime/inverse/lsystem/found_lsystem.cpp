@@ -31,7 +31,7 @@ class GrammarWriter {
     GrammarWriter(const FoundGrammar& grammar, const StrokeGraph& graph) : grammar_(grammar), graph_(graph) {}
 
     std::string text() const {
-        const Growth& growth = grammar_.growth;
+        const LsysGrowth& growth = grammar_.growth;
         std::string text = "lsys found {\n";
         text += fmt::format("  angle {}\n  steps {}\n  axiom {}{}\n", with_digits(graph_.angle_deg, 12),
                             growth.steps, first_turn(), word(grammar_.axiom, "1", "1"));

@@ -57,12 +57,12 @@ class GrammarSearch {
     }
 
     /// A system with nearly as many letters as it draws says nothing.
-    bool too_large(const Growth& growth) const {
+    bool too_large(const LsysGrowth& growth) const {
         return 3 * growth.size() > graph_.strokes || (best_ && growth.size() >= best_->growth.size());
     }
 
     void add(bool rich) {
-        const std::vector<Growth> more = growths(graph_.strokes, rich, graph_.sized(), meter_);
+        const std::vector<LsysGrowth> more = growths(graph_.strokes, rich, graph_.sized(), meter_);
         growths_.insert(growths_.end(), more.begin(), more.end());
         trials_.resize(growths_.size());
     }
@@ -90,7 +90,7 @@ class GrammarSearch {
     const StrokeGraph& graph_;
     WorkMeter& meter_;
     Unfolding unfolding_;
-    std::vector<Growth> growths_; ///< plain ones, then rich ones
+    std::vector<LsysGrowth> growths_; ///< plain ones, then rich ones
     std::size_t plain_ = SIZE_MAX;
     std::vector<Trial> trials_;
     std::optional<FoundGrammar> best_;

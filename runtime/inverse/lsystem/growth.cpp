@@ -11,7 +11,7 @@ constexpr unsigned most_steps = 14;
 constexpr std::uint8_t most_axiom_letters = 6;
 constexpr double seconds_of_growth = 1e-7; ///< of one table of numbers, for all steps
 
-using Counts = Growth::Counts;
+using Counts = LsysGrowth::Counts;
 
 /// All rows with bounds on their numbers, and from one letter to `most` in all.
 std::vector<Counts> rows(std::size_t letters, const Counts& bounds, std::size_t most) {
@@ -33,9 +33,9 @@ std::vector<Counts> rows(std::size_t letters, const Counts& bounds, std::size_t 
 }
 
 /// Whether the axiom's letter leads to all letters, apart from the first where it is straight.
-bool reaches_all(const Growth& growth) {
+bool reaches_all(const LsysGrowth& growth) {
     if (!growth.by_letter) return true;
-    std::array<bool, Growth::most_letters> seen{};
+    std::array<bool, LsysGrowth::most_letters> seen{};
     seen[growth.axiom_letter] = true;
     for (std::size_t round = 0; round < growth.letters; ++round)
         for (std::size_t from = 0; from < growth.letters; ++from)
@@ -46,13 +46,13 @@ bool reaches_all(const Growth& growth) {
 }
 
 /// Whether exchanging letters that no axiom tells apart gives a table that is listed before.
-bool is_repeated(const Growth& growth) {
+bool is_repeated(const LsysGrowth& growth) {
     for (std::size_t a = 0; a < growth.letters; ++a)
         for (std::size_t b = a + 1; b < growth.letters; ++b) {
             const bool alike = (a < growth.drawn) == (b < growth.drawn) && a != growth.axiom_letter &&
                                b != growth.axiom_letter && !(growth.straight && a == 0);
             if (!alike) continue;
-            std::array<Counts, Growth::most_letters> other = growth.rules;
+            std::array<Counts, LsysGrowth::most_letters> other = growth.rules;
             std::swap(other[a], other[b]);
             for (Counts& row : other)
                 std::swap(row[a], row[b]);
@@ -66,13 +66,13 @@ class GrowthTable {
     GrowthTable(std::uint64_t segments, WorkMeter& meter) : segments_(segments), meter_(meter) {}
 
     /// Adds the growth with each number of steps, and of letters of the axiom, that suits.
-    void try_steps(Growth growth) {
+    void try_steps(LsysGrowth growth) {
         meter_.add(1, seconds_of_growth);
-        std::array<std::uint64_t, Growth::most_letters> drawn{};
+        std::array<std::uint64_t, LsysGrowth::most_letters> drawn{};
         std::fill_n(drawn.begin(), growth.drawn, 1);
         bool checked = false;
         for (unsigned step = 1; step <= most_steps; ++step) {
-            std::array<std::uint64_t, Growth::most_letters> next{};
+            std::array<std::uint64_t, LsysGrowth::most_letters> next{};
             for (std::size_t rule = 0; rule < growth.letters; ++rule)
                 for (std::size_t letter = 0; letter < growth.letters; ++letter)
                     next[rule] += growth.rules[rule][letter] * drawn[letter];
@@ -91,7 +91,7 @@ class GrowthTable {
     }
 
     /// Tries all tables whose rules are rows of these lists, by letter.
-    void try_rows(Growth growth, const std::vector<std::vector<Counts>>& lists, std::size_t most_size,
+    void try_rows(LsysGrowth growth, const std::vector<std::vector<Counts>>& lists, std::size_t most_size,
                   std::size_t at = 0) {
         if (at == growth.letters) {
             if (growth.size() <= most_size) try_steps(growth);
@@ -103,8 +103,8 @@ class GrowthTable {
         }
     }
 
-    std::vector<Growth> sorted() {
-        std::ranges::stable_sort(found_, [](const Growth& a, const Growth& b) {
+    std::vector<LsysGrowth> sorted() {
+        std::ranges::stable_sort(found_, [](const LsysGrowth& a, const LsysGrowth& b) {
             return a.size() != b.size() ? a.size() < b.size() : a.steps > b.steps;
         });
         return std::move(found_);
@@ -113,14 +113,14 @@ class GrowthTable {
   private:
     std::uint64_t segments_;
     WorkMeter& meter_;
-    std::vector<Growth> found_;
+    std::vector<LsysGrowth> found_;
 };
 
 /// Letters that all draw, with rules of their own.
 void add_edge_systems(GrowthTable& table) {
     for (std::uint8_t letters = 1; letters <= 2; ++letters)
         for (std::uint8_t length = 2; length <= 40; ++length) {
-            Growth growth{.letters = letters, .drawn = letters, .by_letter = letters == 1};
+            LsysGrowth growth{.letters = letters, .drawn = letters, .by_letter = letters == 1};
             for (std::size_t rule = 0; rule < letters; ++rule)
                 growth.rules[rule][0] = length;
             table.try_steps(growth);
@@ -131,7 +131,7 @@ void add_edge_systems(GrowthTable& table) {
 
 /// A letter that draws, and grows straight; others mark where rules go on.
 void add_node_systems(GrowthTable& table, std::uint8_t straight) {
-    Growth growth{.drawn = 1, .straight = straight, .axiom_letter = 1};
+    LsysGrowth growth{.drawn = 1, .straight = straight, .axiom_letter = 1};
     growth.rules[0][0] = straight;
     for (std::uint8_t hidden = 1; hidden <= 3; ++hidden)
         for (std::uint8_t segments = 1; segments <= 40; ++segments)
@@ -154,7 +154,7 @@ void add_three_edges(GrowthTable& table) {
 }
 
 void add_three_nodes(GrowthTable& table, std::uint8_t straight) {
-    Growth growth{.letters = 4, .drawn = 1, .straight = straight, .axiom_letter = 1};
+    LsysGrowth growth{.letters = 4, .drawn = 1, .straight = straight, .axiom_letter = 1};
     growth.rules[0][0] = straight;
     const std::vector<Counts> three = rows(4, {3, 3, 3, 3}, 6);
     table.try_rows(growth, {{growth.rules[0]}, three, three, three}, 19);
@@ -168,26 +168,26 @@ void add_mixed_systems(GrowthTable& table) {
 
 } // namespace
 
-std::size_t Growth::drawn_in(std::size_t rule) const {
+std::size_t LsysGrowth::drawn_in(std::size_t rule) const {
     if (rule == letters) return axiom_letter < drawn ? axiom : 0;
     return std::accumulate(rules[rule].begin(), rules[rule].begin() + static_cast<std::ptrdiff_t>(drawn),
                            std::size_t{0});
 }
 
-std::size_t Growth::hidden_in(std::size_t rule) const {
+std::size_t LsysGrowth::hidden_in(std::size_t rule) const {
     if (rule == letters) return axiom_letter < drawn ? 0 : axiom;
     return std::accumulate(rules[rule].begin() + static_cast<std::ptrdiff_t>(drawn), rules[rule].end(),
                            std::size_t{0});
 }
 
-std::size_t Growth::size() const {
+std::size_t LsysGrowth::size() const {
     std::size_t sum = axiom;
     for (std::size_t rule = 0; rule < letters; ++rule)
         sum += drawn_in(rule) + hidden_in(rule);
     return sum;
 }
 
-std::vector<Growth> growths(std::uint64_t segments, bool rich, bool sized, WorkMeter& meter) {
+std::vector<LsysGrowth> growths(std::uint64_t segments, bool rich, bool sized, WorkMeter& meter) {
     GrowthTable table(segments, meter);
     if (rich && !sized) add_three_edges(table);
     if (!rich && !sized) add_edge_systems(table);

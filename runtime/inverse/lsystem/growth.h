@@ -11,7 +11,7 @@ namespace graftal {
 
 /// The numbers of letters in the rules of a system that is looked for. They decide how many segments it
 /// draws after each step (Vitanyi 1980, growth functions of D0L systems).
-struct Growth {
+struct LsysGrowth {
     static constexpr std::size_t most_letters = 4;
     using Counts = std::array<std::uint8_t, most_letters>;
 
@@ -35,6 +35,6 @@ struct Growth {
 /// Numbers of letters, within bounds, that draw so many segments after two or more steps; smaller ones come
 /// first, then those of more steps. `rich`: of three letters with rules of their own; else of one or two, or
 /// of several whose rules have one length. `sized`: segments of each step have a length of their own.
-std::vector<Growth> growths(std::uint64_t segments, bool rich, bool sized, WorkMeter& meter);
+std::vector<LsysGrowth> growths(std::uint64_t segments, bool rich, bool sized, WorkMeter& meter);
 
 } // namespace graftal

@@ -24,7 +24,7 @@ Unfolding::Unfolding(const StrokeGraph& graph, WorkMeter& meter)
         }
 }
 
-std::optional<FoundGrammar> Unfolding::find(const Growth& growth, std::uint32_t start,
+std::optional<FoundGrammar> Unfolding::find(const LsysGrowth& growth, std::uint32_t start,
                                             std::uint64_t most_modules) {
     growth_ = growth;
     modules_ = 0;

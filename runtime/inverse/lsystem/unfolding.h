@@ -22,7 +22,7 @@ using RuleWord = std::vector<RuleSymbol>;
 
 /// A system that draws all strokes of a graph, each as often as it lies there.
 struct FoundGrammar {
-    Growth growth;
+    LsysGrowth growth;
     RuleWord axiom;
     std::vector<RuleWord> rules; ///< of the letters
     std::uint32_t start = 0;     ///< place
@@ -41,7 +41,8 @@ class Unfolding {
     Unfolding(const StrokeGraph& graph, WorkMeter& meter);
 
     /// The first system with this growth that begins at this place, if one is found in so many modules.
-    std::optional<FoundGrammar> find(const Growth& growth, std::uint32_t start, std::uint64_t most_modules);
+    std::optional<FoundGrammar> find(const LsysGrowth& growth, std::uint32_t start,
+                                     std::uint64_t most_modules);
     /// Whether the last search ended by its limit.
     bool gave_up() const { return gave_up_; }
     /// Modules that the last search took.
@@ -90,7 +91,7 @@ class Unfolding {
         bool complete = false;
         Number end_turn = no_turn;
         std::uint8_t open = 0, brackets = 0, drawn = 0, hidden = 0;
-        Growth::Counts counts{}; ///< by letter, as far as letters are known
+        LsysGrowth::Counts counts{}; ///< by letter, as far as letters are known
     };
 
     struct Frame {
@@ -147,7 +148,7 @@ class Unfolding {
 
     const StrokeGraph& graph_;
     WorkMeter& meter_;
-    Growth growth_;
+    LsysGrowth growth_;
     std::vector<Rule> rules_; ///< of the letters, and the axiom
     struct Turn {
         bool known = false;

@@ -72,8 +72,8 @@ int run_fit_blocks(const Options& options) {
     Compilation compilation;
     const Interruption interruption;
     const std::optional<CodedPicture> coded =
-        code_picture(options.points.target, options.fit.tolerance.value_or(default_tolerance), block_task(options, bar),
-                     interruption.flag(), compilation);
+        code_picture(options.points.target, options.fit.tolerance.value_or(default_tolerance),
+                     block_task(options, bar), interruption.flag(), compilation);
     if (coded) compilation.status = write_text(options.render.output, coded->text);
     bar.clear();
     const int status = conclude(options, compilation, interruption.signal());

@@ -192,9 +192,10 @@ void add_fit_options(CLI::App& app, Options& options) {
     FitSettings& fit = options.fit;
     add_target(app, options,
                std::string(target_help) + "; or a drawing (.svg, .csv, .txt, .lsys), for an L-system");
-    app.add_option("-o,--output", options.render.output,
-                   "Model to write: .rifs, .lsys for a drawing, or .pifs with --blocks (default: TARGET's name + "
-                   "that, in this folder)")
+    app.add_option(
+           "-o,--output", options.render.output,
+           "Model to write: .rifs, .lsys for a drawing, or .pifs with --blocks (default: TARGET's name + "
+           "that, in this folder)")
         ->type_name("FILE");
     add_value(
         app, "--maps", "N", "Most maps of the system (default 8)", "a whole number from 2 to 24",
@@ -251,7 +252,8 @@ std::string complete_fit(Options& options) {
     if (draws && !options.fit.blocks) {
         if (output == options.points.target)
             return fmt::format("'{}' is the drawing: name another file by -o", output);
-        if (options.fit.similar || !options.fit.start.empty() || options.fit.most_maps != FitSettings().most_maps)
+        if (options.fit.similar || !options.fit.start.empty() ||
+            options.fit.most_maps != FitSettings().most_maps)
             return "--maps, --similar and --start are for pictures, and not for drawings";
         const double tolerance = options.fit.tolerance.value_or(0.01);
         if (tolerance < 1e-6 || tolerance > 0.2)

@@ -137,12 +137,18 @@ class Comparison {
         }
     }
 
-    bool equals(const Strokes& other, double angle_deg) const {
+    /// The turns that bring the first stroke of the other into a direction of these.
+    bool equals(const Strokes& other) const {
         if (other.size() != strokes_.size()) return false;
-        for (int k = 0; k < 40; ++k)
-            for (const int sign : {1, -1})
-                if (equals_turned(other, sign * k * angle_deg)) return true;
-        return false;
+        const auto deg = [](const Stroke& stroke) {
+            return std::atan2(stroke.to.y - stroke.from.y, stroke.to.x - stroke.from.x) * 180 /
+                   std::numbers::pi;
+        };
+        std::map<long, double> turns;
+        for (const Stroke& stroke : strokes_)
+            turns.emplace(std::lround(100 * deg(stroke)), deg(stroke) - deg(other.front()));
+        return std::ranges::any_of(turns,
+                                   [&](const auto& turn) { return equals_turned(other, turn.second); });
     }
 
   private:
@@ -337,13 +343,13 @@ void study(Outcome outcome, Strokes drawn, double seconds, Dice& dice) {
         text = rules_text(again);
         letters = letters_of(again);
         const auto word = word_after(again, again.steps, 100 * most_letters);
-        same = word && Comparison(truth).equals(drawing_of(again, *word), angle_deg);
+        same = word && Comparison(truth).equals(drawing_of(again, *word));
         const std::optional<Strokes> next = outcome.deeper();
         // A found rule may be a root of the true one: then one true step is several.
         for (unsigned more = 1; more <= 3 && next && !deeper; ++more) {
             const auto other = word_after(again, again.steps + more, 800 * most_letters);
             if (!other) break;
-            deeper = Comparison(*next).equals(drawing_of(again, *other), angle_deg);
+            deeper = Comparison(*next).equals(drawing_of(again, *other));
         }
     }
     std::printf("%s\t%s\t%zu\t%zu\t%zu\t%d\t%d\t%.2f\t%s\t%s\n", outcome.name.c_str(), outcome.kind.c_str(),

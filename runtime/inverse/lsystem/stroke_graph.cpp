@@ -251,7 +251,7 @@ class StrokeGraphBuilder {
         const double mean = sum / weight;
         for (const double turn : turns)
             squares += std::pow(std::remainder(turn, mean), 2);
-        const double doubt = std::max(1e-7, 3 * std::sqrt(squares) / static_cast<double>(turns.size()));
+        const double doubt = std::max(1e-5, 3 * std::sqrt(squares) / static_cast<double>(turns.size()));
         for (int digits = 1; digits < 12; ++digits) {
             std::string text;
             append_number(text, mean, digits);

@@ -46,7 +46,8 @@ struct FitSettings {
     bool similar = false;
     std::string start; ///< a model, or ""
     bool blocks = false;
-    double tolerance = 8; ///< with `blocks`, in levels of 255
+    /// With `blocks` in levels of 255; of drawings a share of the shortest line.
+    std::optional<double> tolerance;
 };
 
 /// Options of `studio`.

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/inverse/blocks/coded_picture.h"
+#include "runtime/inverse/blocks/encode.h"
 #include "runtime/system/file.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
@@ -70,8 +71,8 @@ int run_fit_blocks(const Options& options) {
     Compilation compilation;
     const Interruption interruption;
     const std::optional<CodedPicture> coded =
-        code_picture(options.points.target, options.fit.tolerance, block_task(options, bar),
-                     interruption.flag(), compilation);
+        code_picture(options.points.target, options.fit.tolerance.value_or(BlockCoding().tolerance),
+                     block_task(options, bar), interruption.flag(), compilation);
     if (coded) compilation.status = write_text(options.render.output, coded->text);
     bar.clear();
     const int status = conclude(options, compilation, interruption.signal());

@@ -200,6 +200,8 @@ void add_fit_options(CLI::App& app, Options& options) {
         [&fit](std::uint64_t maps) { fit.most_maps = static_cast<std::size_t>(maps); });
     app.add_flag("--similar", fit.similar,
                  "Only maps that keep angles: turns, mirrors and one factor of size");
+    app.add_flag("--color", fit.in_colour,
+                 "Give each map a tint, so that the model has the target's colours");
     app.add_option(
            "--start", fit.start,
            "Model to begin with: a flat iterated function system in the frame in which graftal writes "

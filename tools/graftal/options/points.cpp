@@ -203,6 +203,8 @@ void add_fit_options(CLI::App& app, Options& options) {
         [&fit](std::uint64_t maps) { fit.most_maps = static_cast<std::size_t>(maps); });
     app.add_flag("--similar", fit.similar,
                  "Only maps that keep angles: turns, mirrors and one factor of size");
+    app.add_flag("--color", fit.in_colour,
+                 "Give each map a tint, so that the model has the target's colours");
     app.add_option(
            "--start", fit.start,
            "Model to begin with: a flat iterated function system in the frame in which graftal writes "
@@ -212,7 +214,7 @@ void add_fit_options(CLI::App& app, Options& options) {
         "--blocks", fit.blocks,
         "Code the whole picture, grey or in colour, by blocks that are copies of larger ones: a .pifs "
         "file, which 'graftal render' decodes at any size");
-    for (const char* const other : {"--threshold", "--light", "--maps", "--similar", "--start"})
+    for (const char* const other : {"--threshold", "--light", "--maps", "--similar", "--color", "--start"})
         blocks->excludes(other);
     add_value(app, "--tolerance", "X",
               "With --blocks: error that photographs then have, about, root mean square in levels of 255; "
@@ -256,8 +258,9 @@ std::string complete_fit(Options& options) {
             return fmt::format("--tolerance: '{}' is not a number from {} to {}", shortest(*fit.tolerance),
                                shortest(least), shortest(most));
     }
-    if (draws && (fit.similar || !fit.start.empty() || fit.most_maps != FitSettings().most_maps))
-        return "--maps, --similar and --start are for pictures, and not for drawings";
+    if (draws &&
+        (fit.similar || fit.in_colour || !fit.start.empty() || fit.most_maps != FitSettings().most_maps))
+        return "--maps, --similar, --color and --start are for pictures, and not for drawings";
     if (output == "-" && options.json)
         return "--json prints where '-o -' writes the model: leave one of them out";
     return {};

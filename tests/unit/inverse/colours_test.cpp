@@ -8,9 +8,10 @@ namespace graftal {
 namespace {
 
 constexpr int size = 160;
-const PlaneMaps gasket = {{0.5, 0, 0, 0.5, 0, 0}, {0.5, 0, 0, 0.5, 0.5, 0}, {0.5, 0, 0, 0.5, 0.25, 0.5}};
+const PlaneMaps tinted_gasket = {
+    {0.5, 0, 0, 0.5, 0, 0}, {0.5, 0, 0, 0.5, 0.5, 0}, {0.5, 0, 0, 0.5, 0.25, 0.5}};
 
-/// The gasket by random iteration, each point in the colour of its address.
+/// The tinted_gasket by random iteration, each point in the colour of its address.
 struct Coloured {
     CellSet set{size, size};
     std::vector<Rgb> colours = std::vector<Rgb>(size * size, Rgb(0.0));
@@ -20,8 +21,8 @@ struct Coloured {
         Vec2 p{0, 0};
         Rgb colour(0.5);
         for (int i = 0; i < 300'000; ++i) {
-            const std::size_t m = draws.below(gasket.size());
-            p = gasket[m](p);
+            const std::size_t m = draws.below(tinted_gasket.size());
+            p = tinted_gasket[m](p);
             colour = alpha * tints[m] + (1 - alpha) * colour;
             const std::size_t cell = set.index(static_cast<int>(p.x * size), static_cast<int>(p.y * size));
             set.cells[cell] = true;
@@ -32,7 +33,7 @@ struct Coloured {
 
 SystemColours fitted(const Coloured& picture) {
     const Target target(picture.set);
-    PlaneMaps maps = gasket;
+    PlaneMaps maps = tinted_gasket;
     const double room = target.room();
     for (PlaneMap& map : maps) { // from the unit square into the target's cells
         map.e = size * map.e + room - map.a * room - map.b * room;

@@ -17,6 +17,7 @@
 #include "compiler/lsys/compile/grammar.h"
 #include "compiler/lsys/drawing.h"
 #include "compiler/lsys/turtle/model_placer.h"
+#include "compiler/lsys/walk/plant.h"
 #include "compiler/lsys/walk/written_word.h"
 #include "compiler/support/counter_random.h"
 #include "compiler/syntax/everyday_words.h"
@@ -349,26 +350,31 @@ class LsysLowering {
         return lowering_.at_root_model() ? *asked : CounterRandom(*asked)(grammar.seed);
     }
 
+    LsysDrawOptions draw_options(const Block& block, const LsysGrammar& grammar,
+                                 const std::map<SymbolId, Model>& models, std::optional<unsigned> steps) {
+        const LowerOptions& options = lowering_.options;
+        return {.steps = steps,
+                .share = share_of_step(block, grammar),
+                .seed = seed_of(grammar),
+                .exact = options.exact,
+                .max_modules = options.max_modules,
+                .inner = inner_counts(models),
+                .has_other_models = has_other_models(models),
+                .max_parts = options.max_objects,
+                .run_from = options.run_from,
+                .meter = &lowering_.meter};
+    }
+
     std::optional<ObjectId> draw(const Block& block, const LsysGrammar& grammar,
                                  const std::map<SymbolId, Model>& models, std::optional<unsigned> steps) {
         const LsysBlock& source = *block.source;
-        const LowerOptions& options = lowering_.options;
-        if (options.in_place != LowerOptions::InPlace::nothing && is_root(block)) {
-            take_word(block, grammar, steps);
+        const LsysDrawOptions options = draw_options(block, grammar, models, steps);
+        if (lowering_.options.in_place != LowerOptions::InPlace::nothing && is_root(block)) {
+            take_word(block, grammar, placer(models), options);
             return std::nullopt;
         }
-        std::optional<LsysDrawing> drawing = draw_lsys(grammar, placer(models),
-                                                       {.steps = steps,
-                                                        .share = share_of_step(block, grammar),
-                                                        .seed = seed_of(grammar),
-                                                        .exact = options.exact,
-                                                        .max_modules = options.max_modules,
-                                                        .inner = inner_counts(models),
-                                                        .has_other_models = has_other_models(models),
-                                                        .max_parts = options.max_objects,
-                                                        .run_from = options.run_from,
-                                                        .meter = &lowering_.meter},
-                                                       graph_, pool_, diagnostics_);
+        std::optional<LsysDrawing> drawing =
+            draw_lsys(grammar, placer(models), options, graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
         if (drawing->limited_by_work) lowering_.notes.limited_by_work = true;
         if (is_root(block)) {
@@ -386,26 +392,59 @@ class LsysLowering {
     }
 
     /// The word of the root model, or its modules, for the notes.
-    void take_word(const Block& block, const LsysGrammar& grammar, std::optional<unsigned> steps) {
+    void take_word(const Block& block, const LsysGrammar& grammar, const ModelPlacer& models,
+                   LsysDrawOptions options) {
         constexpr std::uint64_t most_written = 5'000'000;
-        if (!steps) {
+        if (!options.steps) {
             diagnostics_
                 .error(block.source->steps->span,
                        fmt::format("'lsys {}' draws a limit, which has no word", block.source->name.text))
                 .with_hint("give '--steps N' for the word after so many steps");
             return;
         }
-        const std::uint64_t seed = seed_of(grammar),
-                            most = std::min(most_written, lowering_.options.max_modules);
-        LsysRewriter rewriter(grammar, diagnostics_, seed, &lowering_.meter);
-        if (lowering_.options.exact) rewriter.use_no_pool();
-        std::optional<ModuleString> word = derived_word(rewriter, *steps, seed, most, diagnostics_);
-        if (!word) return;
-        const DerivedWord derived{rewriter, std::move(*word), *steps};
-        if (lowering_.options.in_place == LowerOptions::InPlace::word)
-            lowering_.notes.word = written_word(derived);
-        else if (std::optional<Plant> plant = plant_of(derived, seed, diagnostics_))
-            lowering_.notes.plant = std::make_shared<const Plant>(std::move(*plant));
+        const std::uint64_t most = std::min(most_written, options.max_modules);
+        const bool is_composed = grammar.is_stochastic && !options.exact && !grammar.needs_word;
+        if (!is_composed) options.max_modules = most;
+        if (lowering_.options.in_place == LowerOptions::InPlace::plant)
+            take_plant(grammar, models, options, is_composed, most);
+        else if (is_composed)
+            take_composed_word(grammar, models, options, most);
+        else {
+            LsysRewriter rewriter(grammar, diagnostics_, options.seed, options.meter);
+            if (options.exact) rewriter.use_no_pool();
+            lowering_.notes.word = derived_word(rewriter, *options.steps, options.seed, most, diagnostics_);
+        }
+    }
+
+    void take_plant(const LsysGrammar& grammar, const ModelPlacer& models, const LsysDrawOptions& options,
+                    bool is_composed, std::uint64_t most) {
+        // Births of modules make no difference, except for what composes by them.
+        LsysGrammar aged = grammar;
+        if (!is_composed && !grammar.is_random(RuleKind::interpret))
+            aged.ages.assign(aged.symbols.size(), true);
+        PlantBuilder plant(aged, *options.steps + options.share, most, diagnostics_);
+        if (tell_lsys(aged, models, options, graph_, pool_, diagnostics_, plant))
+            lowering_.notes.plant = std::make_shared<const Plant>(std::move(plant).take());
+    }
+
+    /// The word by the choices of the parts that are composed for a picture.
+    void take_composed_word(const LsysGrammar& grammar, const ModelPlacer& models,
+                            const LsysDrawOptions& options, std::uint64_t most) {
+        const auto cuts = [&](const LsysRule& rule) {
+            return rule.kind == RuleKind::interpret &&
+                   std::ranges::any_of(rule.successor, [&](const LsysTemplate& module) {
+                       return grammar.commands[module.symbol] == TurtleCommand::cut;
+                   });
+        };
+        if (const auto rule = std::ranges::find_if(grammar.rules, cuts); rule != grammar.rules.end()) {
+            diagnostics_
+                .error(rule->source->span, "an interpretation that cuts hides the rest of a random word")
+                .with_hint("give '--exact'");
+            return;
+        }
+        WrittenWord word(grammar, most, diagnostics_);
+        if (tell_lsys(grammar, models, options, graph_, pool_, diagnostics_, word))
+            lowering_.notes.word = std::move(word).take();
     }
 
     static std::map<SymbolId, std::size_t> inner_counts(const std::map<SymbolId, Model>& models) {

@@ -25,7 +25,39 @@ Affine on_corners(Vec3 a, Vec3 b, Vec3 c) {
     return {Mat3(x, y, normal / std::sqrt(glm::length(normal))), centre};
 }
 
+/// A round piece, without its ends.
+DrawnBody frustum(double length, double from_width, double width) {
+    const double slant = std::hypot(length, (from_width - width) / 2);
+    const double squares = from_width * from_width + from_width * width + width * width;
+    return {.organ = Organ::segment,
+            .length = length,
+            .width = width,
+            .area = std::numbers::pi * (from_width + width) / 2 * slant,
+            .volume = std::numbers::pi / 12 * length * squares};
+}
+
+DrawnBody ball(double diameter) {
+    const double area = std::numbers::pi * diameter * diameter;
+    return {.organ = Organ::ball, .width = diameter, .area = area, .volume = area * diameter / 6};
+}
+
+DrawnBody disc(double diameter) {
+    return {.organ = Organ::disc, .width = diameter, .area = std::numbers::pi * diameter * diameter / 4};
+}
+
+DrawnBody polygon(std::span<const Vec3> corners) {
+    DrawnBody body{.organ = Organ::polygon};
+    for (const auto& [a, b, c] : triangulate(corners))
+        body.area += glm::length(glm::cross(corners[b] - corners[a], corners[c] - corners[a])) / 2;
+    return body;
+}
+
 } // namespace
+
+void TurtleBodies::tell(DrawnBody body, int colour) const {
+    body.material = palette_[static_cast<std::size_t>(colour)].name;
+    witness_->draws(body);
+}
 
 void TurtleBodies::widen_packed(double factor) {
     for (std::size_t i = 0; i < packed_count(); ++i) {
@@ -77,6 +109,7 @@ void TurtleBodies::add_item(RunShape shape, Vec3 base, Vec3 axis, double radius,
 
 void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, double width, int colour,
                                Span span, BodySink sink) {
+    if (witness_) return tell(frustum(std::abs(length), width, width), colour);
     if (length == 0 || width == 0) return;
     const double radius = width / 2;
     if (run_) {
@@ -96,6 +129,11 @@ void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double 
     if (width > from_width) std::swap(thick, thin);
     const Vec3 y = thin - thick;
     const double length = glm::length(y), radius = std::max(width, from_width) / 2;
+    if (witness_) {
+        DrawnBody body = frustum(length, from_width, width);
+        body.start = from;
+        return tell(body, colour);
+    }
     if (!(length > 0) || !(radius > 0)) return;
     // Round it may face anywhere: as the turtle does, so that equal pieces stay equal.
     Vec3 x = start_from_turtle.linear[0] - glm::dot(start_from_turtle.linear[0], y) / (length * length) * y;
@@ -127,6 +165,7 @@ std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {
 void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span,
                               BodySink sink) {
     diameter = at_least_size(diameter);
+    if (witness_) return tell(ball(std::abs(diameter)), colour);
     if (diameter == 0) return;
     if (run_) {
         const double radius = std::abs(diameter) / 2;
@@ -140,6 +179,7 @@ void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, 
 void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span,
                             BodySink sink) {
     diameter = at_least_size(diameter);
+    if (witness_) return tell(disc(std::abs(diameter)), colour);
     if (diameter == 0) return;
     const Affine upright = start_from_turtle * Affine::rotate({1, 0, 0}, 90);
     const double thickness = disc_thickness * diameter;
@@ -156,6 +196,7 @@ void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, in
 }
 
 void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink) {
+    if (witness_) return tell(polygon(corners), colour);
     for (const auto& [a, b, c] : triangulate(corners)) {
         const Affine place = on_corners(corners[a], corners[b], corners[c]);
         if (is_finite(place)) add(PrimitiveKind::triangle, place, colour, span, sink);
@@ -164,6 +205,7 @@ void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span s
 
 void TurtleBodies::add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span,
                              BodySink sink) {
+    if (witness_) return witness_->draws({.organ = Organ::model, .is_measured = false});
     const Vec3 scale(at_least_size(model.scale.x), at_least_size(model.scale.y),
                      at_least_size(model.scale.z));
     if (scale.x == 0 || scale.y == 0) return;

@@ -1,5 +1,7 @@
 // Words as text: published ones, and words that read back as axioms.
 
+#include <algorithm>
+#include <cstdint>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -65,6 +67,35 @@ TEST(LsysWord, SaysWhereThereIsNone) {
     EXPECT_EQ(word_of(limit, 1).text, "F(1)[+(30)A]");
     const std::string doubling = "lsys a {\n  axiom A\n  steps 60\n  A -> AA\n}\n";
     EXPECT_NE(word_of(doubling).messages.find("more than 5000000 modules"), std::string::npos);
+}
+
+// A random model is drawn of parts that are composed once; its word is that of the drawing.
+TEST(LsysWord, OfChanceIsThatWhichIsDrawn) {
+    const std::string random =
+        "  A(n) : n > 0 -> F(n)[+(40)A(n*0.7)]A(n*0.9) : 0.5\n  A(n) -> F(n)A(n*0.8) : 0.3\n"
+        "  A(n) -> F(n)[-(30)%F]F(0.1) : 0.2\n";
+    for (std::uint64_t seed = 1; seed <= 8; ++seed)
+        for (const bool exact : {false, true}) {
+            LowerOptions options;
+            options.seed = seed;
+            options.exact = exact;
+            SourceMap sources;
+            Diagnostics diagnostics;
+            const auto drawn = [&](const std::string& text) {
+                const LoweredText lowered = lower_text("m.lsys", text, options, sources, diagnostics);
+                EXPECT_TRUE(lowered.notes.derivation) << diagnostics.render(sources);
+                return lowered.notes.derivation ? lowered.notes.derivation->segments : "";
+            };
+            const std::string model = "lsys a {\n  width 0.1\n  steps 6\n  axiom A(1)\n" + random + "}\n";
+            const std::string segments = drawn(model);
+            options.in_place = LowerOptions::InPlace::word;
+            const std::string word =
+                lower_text("m.lsys", model, options, sources, diagnostics).notes.word.value_or("");
+            options.in_place = LowerOptions::InPlace::nothing;
+            EXPECT_EQ(std::to_string(std::ranges::count(word, 'F')), segments) << word;
+            EXPECT_EQ(drawn("lsys a {\n  width 0.1\n  steps 0\n  axiom " + word + "\n" + random + "}\n"),
+                      segments);
+        }
 }
 
 } // namespace

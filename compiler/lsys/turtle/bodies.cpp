@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -50,6 +51,24 @@ DrawnBody polygon(std::span<const Vec3> corners) {
     for (const auto& [a, b, c] : triangulate(corners))
         body.area += glm::length(glm::cross(corners[b] - corners[a], corners[c] - corners[a])) / 2;
     return body;
+}
+
+/// The area of one side of a model that is made of triangles only, as blades of leaves are; nothing of
+/// others, nor of many.
+std::optional<double> flat_area(const Graph& graph, ObjectId id, const Mat3& linear, int& most) {
+    const Object& object = graph.objects[id];
+    if (--most < 0 || object.is_combined() || object.packed) return std::nullopt;
+    if (object.primitive) {
+        if (*object.primitive != PrimitiveKind::triangle) return std::nullopt;
+        return 0.75 * std::numbers::sqrt3 * glm::length(glm::cross(linear[0], linear[1]));
+    }
+    double sum = 0;
+    for (const Instance& part : object.instances) {
+        const auto area = flat_area(graph, part.master, linear * part.parent_from_child.linear, most);
+        if (!area) return std::nullopt;
+        sum += *area;
+    }
+    return sum;
 }
 
 } // namespace
@@ -205,7 +224,13 @@ void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span s
 
 void TurtleBodies::add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span,
                              BodySink sink) {
-    if (witness_) return witness_->draws({.organ = Organ::model, .is_measured = false});
+    if (witness_) {
+        int triangles_left = 1000;
+        const std::optional<double> area =
+            flat_area(graph_, model.root, Affine::scale(model.scale).linear, triangles_left);
+        return witness_->draws(
+            {.organ = Organ::model, .area = area.value_or(0), .is_measured = area.has_value()});
+    }
     const Vec3 scale(at_least_size(model.scale.x), at_least_size(model.scale.y),
                      at_least_size(model.scale.z));
     if (scale.x == 0 || scale.y == 0) return;

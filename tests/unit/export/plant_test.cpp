@@ -189,6 +189,19 @@ TEST(Plants, HaveARowForEachOrgan) {
     EXPECT_NEAR(m[9].volume, pi * (0.01 + 0.005 + 0.0025), 1e-12); // a frustum from 0.2 to 0.1 wide
 }
 
+// A blade of 0.5 x 1 that a plant places at twice its length and half its size.
+TEST(Plants, HaveTheAreaOfTheirLeaves) {
+    const auto plant = plant_of("lsys leaf {\n steps 0\n axiom {.f(1)+(90)f(0.5)+(90)f(1)}\n}\n"
+                                "main lsys a {\n width 0.1\n steps 0\n axiom F[+~leaf(1,2)]~leaf(0.5)L\n"
+                                " interpret L -> ~leaf~leaf\n}\n");
+    ASSERT_TRUE(plant);
+    ASSERT_EQ(shape_of(*plant), "F ~leaf+0:1.0 ~leaf<0:0.1 L<2:0.2 ~leaf<2:0.2 ~leaf<4:0.3");
+    EXPECT_NEAR(plant->modules[1].area, 1, 1e-12);
+    EXPECT_NEAR(plant->modules[2].area, 0.125, 1e-12);
+    EXPECT_NEAR(plant->modules[3].area, 1, 1e-12);
+    EXPECT_TRUE(plant->modules[3].is_measured);
+}
+
 TEST(Plants, HaveNoMoreRowsThanAllowed) {
     for (const char* model : {"lsys a {\n width 1\n steps 8\n axiom A\n A -> F[+A]A\n}\n",
                               "lsys a {\n width 1\n steps 0\n axiom A(12)\n"

@@ -1,6 +1,7 @@
 // Words as text: published ones, and words that read back as axioms.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -96,6 +97,38 @@ TEST(LsysWord, OfChanceIsThatWhichIsDrawn) {
             EXPECT_EQ(drawn("lsys a {\n  width 0.1\n  steps 0\n  axiom " + word + "\n" + random + "}\n"),
                       segments);
         }
+}
+
+// What probabilities leave below 1 leaves the module as it is, parameters and all.
+TEST(LsysWord, KeepsModulesByTheRestOfProbabilities) {
+    constexpr int count = 4000, steps = 2;
+    std::string axiom;
+    for (int i = 0; i < count; ++i)
+        axiom += "A(2,3)";
+    for (const bool exact : {false, true}) {
+        LowerOptions options;
+        options.in_place = LowerOptions::InPlace::word;
+        options.exact = exact;
+        SourceMap sources;
+        Diagnostics diagnostics;
+        const std::string model = "lsys a {\n  width 1\n  steps " + std::to_string(steps) + "\n  axiom " +
+                                  axiom + "\n  A(x,y) -> F(x) : 0.2\n  A(x,y) -> G(y) : 0.1\n}\n";
+        const std::string word =
+            lower_text("m.lsys", model, options, sources, diagnostics).notes.word.value_or("");
+        const auto times = [&](const std::string& part) {
+            int found = 0;
+            for (std::size_t at = word.find(part); at != std::string::npos; at = word.find(part, at + 1))
+                ++found;
+            return found;
+        };
+        EXPECT_EQ(times("F(2)") + times("G(3)") + times("A(2,3)"), count);
+        const double stay = std::pow(0.7, steps);
+        const double four_deviations = 4 * std::sqrt(count * stay * (1 - stay));
+        EXPECT_NEAR(times("A(2,3)"), count * stay, four_deviations);
+        EXPECT_NEAR(times("F(2)"), 2 * times("G(3)"), 4 * four_deviations);
+        EXPECT_NE(diagnostics.render(sources).find("the module stays as it is"), std::string::npos);
+        EXPECT_FALSE(diagnostics.has_errors());
+    }
 }
 
 } // namespace

@@ -14,11 +14,10 @@
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
+#include "compiler/lsys/as_drawn.h"
 #include "compiler/lsys/compile/grammar.h"
 #include "compiler/lsys/drawing.h"
 #include "compiler/lsys/turtle/model_placer.h"
-#include "compiler/lsys/walk/plant.h"
-#include "compiler/lsys/walk/written_word.h"
 #include "compiler/support/counter_random.h"
 #include "compiler/syntax/everyday_words.h"
 
@@ -370,7 +369,11 @@ class LsysLowering {
         const LsysBlock& source = *block.source;
         const LsysDrawOptions options = draw_options(block, grammar, models, steps);
         if (lowering_.options.in_place != LowerOptions::InPlace::nothing && is_root(block)) {
-            take_word(block, grammar, placer(models), options);
+            LowerNotes& notes = lowering_.notes;
+            if (lowering_.options.in_place == LowerOptions::InPlace::word)
+                notes.word = word_as_drawn(grammar, placer(models), options, graph_, pool_, diagnostics_);
+            else
+                notes.plant = plant_as_drawn(grammar, placer(models), options, graph_, pool_, diagnostics_);
             return std::nullopt;
         }
         std::optional<LsysDrawing> drawing =
@@ -389,62 +392,6 @@ class LsysLowering {
         }
         if (is_idle) warn_of_no_steps(source);
         return add_root(source, std::move(*drawing));
-    }
-
-    /// The word of the root model, or its modules, for the notes.
-    void take_word(const Block& block, const LsysGrammar& grammar, const ModelPlacer& models,
-                   LsysDrawOptions options) {
-        constexpr std::uint64_t most_written = 5'000'000;
-        if (!options.steps) {
-            diagnostics_
-                .error(block.source->steps->span,
-                       fmt::format("'lsys {}' draws a limit, which has no word", block.source->name.text))
-                .with_hint("give '--steps N' for the word after so many steps");
-            return;
-        }
-        const std::uint64_t most = std::min(most_written, options.max_modules);
-        const bool is_composed = grammar.is_stochastic && !options.exact && !grammar.needs_word;
-        if (!is_composed) options.max_modules = most;
-        if (lowering_.options.in_place == LowerOptions::InPlace::plant)
-            take_plant(grammar, models, options, is_composed, most);
-        else if (is_composed)
-            take_composed_word(grammar, models, options, most);
-        else {
-            LsysRewriter rewriter(grammar, diagnostics_, options.seed, options.meter);
-            if (options.exact) rewriter.use_no_pool();
-            lowering_.notes.word = derived_word(rewriter, *options.steps, options.seed, most, diagnostics_);
-        }
-    }
-
-    void take_plant(const LsysGrammar& grammar, const ModelPlacer& models, const LsysDrawOptions& options,
-                    bool is_composed, std::uint64_t most) {
-        // Births of modules make no difference, except for what composes by them.
-        LsysGrammar aged = grammar;
-        if (!is_composed && !grammar.is_random(RuleKind::interpret))
-            aged.ages.assign(aged.symbols.size(), true);
-        PlantBuilder plant(aged, *options.steps + options.share, most, diagnostics_);
-        if (tell_lsys(aged, models, options, graph_, pool_, diagnostics_, plant))
-            lowering_.notes.plant = std::make_shared<const Plant>(std::move(plant).take());
-    }
-
-    /// The word by the choices of the parts that are composed for a picture.
-    void take_composed_word(const LsysGrammar& grammar, const ModelPlacer& models,
-                            const LsysDrawOptions& options, std::uint64_t most) {
-        const auto cuts = [&](const LsysRule& rule) {
-            return rule.kind == RuleKind::interpret &&
-                   std::ranges::any_of(rule.successor, [&](const LsysTemplate& module) {
-                       return grammar.commands[module.symbol] == TurtleCommand::cut;
-                   });
-        };
-        if (const auto rule = std::ranges::find_if(grammar.rules, cuts); rule != grammar.rules.end()) {
-            diagnostics_
-                .error(rule->source->span, "an interpretation that cuts hides the rest of a random word")
-                .with_hint("give '--exact'");
-            return;
-        }
-        WrittenWord word(grammar, most, diagnostics_);
-        if (tell_lsys(grammar, models, options, graph_, pool_, diagnostics_, word))
-            lowering_.notes.word = std::move(word).take();
     }
 
     static std::map<SymbolId, std::size_t> inner_counts(const std::map<SymbolId, Model>& models) {

@@ -7,6 +7,7 @@ find_package(Boost REQUIRED)
 # By pkg-config: the CMake files of the Debian package ask for its tools and Python module too.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
+pkg_check_modules(Zstandard REQUIRED IMPORTED_TARGET libzstd)
 find_package(OpenEXR REQUIRED)
 find_package(PNG REQUIRED)
 find_package(CLI11 REQUIRED)

@@ -132,6 +132,7 @@ constexpr Row rows[] = {
     {bit(P::haze), {"distance", "distance: d", "After it, a third of the light from farther parts is left."}},
     {bit(P::haze), {"base", "base: y", "Above it the haze thins."}},
     {bit(P::haze), {"height", "height: h", "So far above `base`, half of the density is left."}},
+    {bit(P::haze), {"sun", "sun: share", "The share of its light that is the first sun's: bright towards it, dark in shadows."}},
     {bit(P::haze) | bit(P::ground) | bit(P::material), {"color", "color: r, g, b", "The colour, linear red, green and blue in [0, 1]."}},
     {bit(P::light), {"color", "color: r, g, b", "The colour, and the brightness: 1 makes a white surface white."}},
     {bit(P::light), {"sun", "sun: x, y, z", "Parallel rays from this direction."}},

@@ -61,6 +61,7 @@ struct HazeSetting {
     double base = 0;
     std::optional<double> height; ///< nothing: even all over, as far as anything is seen
     std::optional<Rgb> rgb;       ///< nothing: as the sky at the horizon
+    double sun = 0;               ///< the share of its light that is the first sun's
     bool operator==(const HazeSetting&) const = default;
 };
 

@@ -116,8 +116,8 @@ bool finite(const Film& film) {
 }
 
 bool finite(const HazeSetting& setting) {
-    const auto& [distance, base, height, rgb] = setting;
-    return all_finite(distance, base, height, rgb);
+    const auto& [distance, base, height, rgb, sun] = setting;
+    return all_finite(distance, base, height, rgb, sun);
 }
 
 template<typename T> bool finite(const std::optional<T>& value) {

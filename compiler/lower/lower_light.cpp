@@ -162,6 +162,9 @@ HazeSetting lower_haze(const SceneFields& fields) {
     haze.base = fields.coordinate("base").value_or(0);
     haze.height = fields.size("height");
     haze.rgb = fields.light_color("color");
+    const auto is_share = [](double value) { return value >= 0 && value <= 1; };
+    haze.sun =
+        fields.number("sun", is_share, "lie between 0 and 1, the whole of the haze's light").value_or(0);
     return haze;
 }
 
@@ -176,11 +179,16 @@ Film lower_film(const SceneFields& fields) {
 
 void check_sky(const std::vector<SceneStatement>& statements, const SceneSettings& settings,
                Diagnostics& diagnostics) {
-    if (!settings.sky || !settings.sky->turbidity) return;
+    using Kind = SceneStatement::Kind;
+    const bool of_sky = settings.sky && settings.sky->turbidity,
+               of_haze = settings.haze && settings.haze->sun > 0;
     if (std::ranges::any_of(settings.lights, [](const LightSetting& light) { return light.sun; })) return;
     for (const SceneStatement& statement : statements)
-        if (statement.kind == SceneStatement::Kind::sky)
-            diagnostics.error(statement.span, "a clear sky needs a sun")
+        if ((of_sky && statement.kind == Kind::sky) || (of_haze && statement.kind == Kind::haze))
+            diagnostics
+                .error(statement.span, statement.kind == Kind::sky
+                                           ? "a clear sky needs a sun"
+                                           : "haze that shows a sun's light needs a sun")
                 .with_hint("light { sun: 1, 1, 2  angle: 0.53  temperature: 5500 } is one");
 }
 

@@ -129,6 +129,7 @@ Haze resolve(const HazeSetting& setting, const View& view) {
     if (view.sky_light && view.sky_light->picture)
         horizon = glm::normalize(horizon + Vec3(0, 2.0 / view.sky_light->picture->height(), 0));
     haze.rgb = setting.rgb.value_or(view.background(horizon));
+    haze.sun = setting.sun;
     return haze;
 }
 
@@ -178,6 +179,12 @@ Rgb View::ambient_light() const {
 bool View::has_soft_light() const {
     return sky_light ||
            std::ranges::any_of(lights, [](const Light& light) { return light.is_disc() || light.is_area(); });
+}
+
+const Light* View::sun_of_haze() const {
+    if (!haze || !(haze->sun > 0)) return nullptr;
+    const auto sun = std::ranges::find_if(lights, &Light::sun);
+    return sun == lights.end() ? nullptr : &*sun;
 }
 
 bool shows_blur(const Graph& graph, const View& view) {

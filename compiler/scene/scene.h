@@ -107,6 +107,8 @@ struct View {
     Rgb ambient_light() const;
     /// Whether light comes from more than points: from discs, or from all directions.
     bool has_soft_light() const;
+    /// The first sun, if haze shows its light in shafts; else null.
+    const Light* sun_of_haze() const;
 };
 
 /// Whether the model or its ground has a material whose mirrors or glass are blurred.

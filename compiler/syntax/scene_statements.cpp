@@ -32,7 +32,8 @@ const std::vector<FieldRule>& rules(Kind kind) {
     static const std::vector<FieldRule> haze = {{"distance", Shape::number},
                                                 {"color", Shape::color},
                                                 {"base", Shape::number},
-                                                {"height", Shape::number}};
+                                                {"height", Shape::number},
+                                                {"sun", Shape::number}};
     static const std::vector<FieldRule> light = {
         {"location", Shape::vector},    {"sun", Shape::vector},        {"color", Shape::color},
         {"temperature", Shape::number}, {"brightness", Shape::number}, {"angle", Shape::number},

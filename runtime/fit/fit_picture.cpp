@@ -12,7 +12,7 @@ constexpr int light_steps_of_samples = 128;
 /// Whether pixels are estimated, by samples that differ.
 bool is_sampled(const Graph& graph, const View& view, const PictureWishes& wishes) {
     if (view.lens.radius > 0) return true;
-    return !wishes.listed_lights && (view.has_soft_light() || shows_blur(graph, view));
+    return !wishes.listed_lights && (view.has_soft_light() || view.sun_of_haze() || shows_blur(graph, view));
 }
 
 Sampling sampling_for(bool sampled, const View& view, const PictureWishes& wishes) {

@@ -73,7 +73,9 @@ std::string failure(const PovrayJob& job, const PovrayLog& log, const ProcessRes
     if (log.illegal_matrix)
         return "POV-Ray changed a placement that is too small for its precision: the picture is wrong";
     if (log.no_objects) return "POV-Ray found no objects in the scene";
-    if (job.finite_objects && log.finite_objects && *job.finite_objects != *log.finite_objects)
+    if (job.finite_objects && log.finite_objects &&
+        (*log.finite_objects > *job.finite_objects ||
+         *log.finite_objects + job.may_be_empty < *job.finite_objects))
         return fmt::format("POV-Ray found {} objects in a scene of {}: the picture is wrong",
                            *log.finite_objects, *job.finite_objects);
     return {};

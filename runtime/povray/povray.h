@@ -33,6 +33,8 @@ struct PovrayJob {
     /// POV-Ray somewhere else.
     bool unconfined = false;
     std::optional<std::uint64_t> finite_objects; ///< count for POV-Ray to find; nothing: not checked
+    std::uint64_t may_be_empty =
+        0; ///< objects among them of which nothing may be left: POV-Ray does not count these
     std::function<void(const PovrayProgress&)> on_progress;
     CancelFlag cancel; ///< ends POV-Ray
 };

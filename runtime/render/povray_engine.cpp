@@ -67,10 +67,10 @@ Status finish_picture(const PovrayJob& job, const RenderOptions& options, const 
 
 /// Number of finite objects that POV-Ray must count: every placement except those of planes and of operands,
 /// and what the operands make.
-std::uint64_t finite_objects(const Cut& cut) {
-    std::uint64_t count = 0;
-    for (const CombinedPart& part : cut.combined)
-        count += part.holder == no_operand;
+void count_objects(const Cut& cut, PovrayJob& job) {
+    const auto stands = [](const CombinedPart& part) { return part.holder == no_operand; };
+    job.may_be_empty = static_cast<std::uint64_t>(std::ranges::count_if(cut.combined, stands));
+    std::uint64_t count = job.may_be_empty;
     for (const PlacementGroup& group : cut.groups) {
         if (group.operand != no_operand) continue;
         for (const Placement& placement : group.placements) {
@@ -80,7 +80,7 @@ std::uint64_t finite_objects(const Cut& cut) {
         for (const PackedPlacements& parts : group.packed)
             count += parts.size();
     }
-    return count;
+    job.finite_objects = count;
 }
 
 const char* name_of(PovrayProgress::Stage stage) {
@@ -148,6 +148,9 @@ void note_lacks(const CompiledModel& model, Diagnostics& diagnostics) {
             .note(span, "POV-Ray's picture has no light from surface to surface: each material's 'ambient' "
                         "stands for it")
             .with_hint("use '--engine native' to follow the 'bounces' of the sky");
+    if (view.sun_of_haze())
+        diagnostics.note(span, "POV-Ray's picture shows haze without the sun's shafts")
+            .with_hint("use '--engine native' to draw the 'sun' of the haze");
     if (shows_blur(graph, view))
         diagnostics.note(span, "POV-Ray's picture shows all mirrors and glass sharp")
             .with_hint("use '--engine native' to draw the 'blur' of materials");
@@ -338,7 +341,7 @@ std::optional<PovrayReport> render_by_povray(PictureSession& session, const Rend
     };
     if (!run("emit", emit)) return std::nullopt;
     PovrayReport report = report_of(model->cut);
-    job.finite_objects = finite_objects(model->cut);
+    count_objects(model->cut, job);
     model.reset(); // POV-Ray may need the memory
     session.yield_memory();
     return_free_memory();

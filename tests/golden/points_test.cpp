@@ -42,6 +42,11 @@ TEST_F(CommandLine, PointsUsage) {
         {"collage a.png b.rifs --size 10x10", "--size"},
         {"fit", "'fit' needs TARGET: 'graftal fit TARGET'"},
         {"fit a.png -o b.png", "'b.png': the name of the model must end in .rifs"},
+        {"fit a.svg -o b.rifs", "'b.rifs': the name of the model must end in .lsys"},
+        {"fit a.lsys", "'a.lsys' is the drawing: name another file by -o"},
+        {"fit a.svg --maps 3", "--maps, --similar, --color and --start are for pictures"},
+        {"fit a.png --tolerance 0.1", "--tolerance is for drawings"},
+        {"fit a.svg --tolerance 0.5", "--tolerance: '0.5' is not a number from 1e-6 to 0.2"},
         {"fit a.png --maps 1", "--maps: '1' is not a whole number from 2 to 24"},
     };
     for (const auto& [arguments, message] : cases) {
@@ -153,6 +158,33 @@ TEST_F(CommandLine, Fit) {
     EXPECT_EQ(stopped.status, 124) << "timeout's own";
     EXPECT_THAT(read("w.rifs"), HasSubstr("codes 2d"));
     EXPECT_EQ(files(), "g.rifs t.png t.rifs u.rifs w.rifs");
+}
+
+TEST_F(CommandLine, FitDrawings) {
+    write("bush.lsys", "lsys bush {\n angle 25.7\n steps 4\n axiom X\n X -> F[+X][-X]FX\n F -> FF\n}\n");
+    ASSERT_EQ(graftal("export bush.lsys -o bush.svg -q").status, 0);
+    ASSERT_EQ(graftal("export bush.lsys --plotter -o pen.svg -q").status, 0);
+    const RunResult text = graftal("fit bush.svg -o found.lsys");
+    EXPECT_EQ(text.status, 0) << text.err;
+    EXPECT_THAT(text.err, StartsWith("found.lsys: an L-system of 8 letters, for 160 lines\n"
+                                     "agreement      it draws 160 of 160 lines, no farther than "));
+    EXPECT_THAT(read("found.lsys"), HasSubstr("\n#   graftal fit bush.svg -o found.lsys\n"));
+    EXPECT_THAT(read("found.lsys"), HasSubstr("\n  angle 25.7\n  steps 4\n  axiom X\n  F -> FF\n  X -> F"));
+    EXPECT_THAT(graftal("check found.lsys").out, HasSubstr("found.lsys: ok"));
+    const auto json = nlohmann::json::parse(graftal("fit bush.lsys -o again.lsys --json -q").out);
+    EXPECT_EQ(json["lines"], 160);
+    EXPECT_EQ(json["redrawn"], 160);
+    EXPECT_EQ(json["steps"], 4);
+    const RunResult cut = graftal("fit pen.svg --work 1");
+    EXPECT_EQ(cut.status, 1) << "a pen draws each line once, in any direction";
+    EXPECT_THAT(cut.err, HasSubstr("error: "));
+    write("two.csv", "x1,y1,x2,y2\n0,0,1,0\n1,0,1,1\n");
+    EXPECT_EQ(graftal("fit two.csv").status, 1);
+    write("broken.svg", "<svg><path d='M0 0");
+    EXPECT_EQ(graftal("fit broken.svg").status, 1);
+    EXPECT_EQ(graftal("fit none.svg").status, 3);
+    EXPECT_EQ(graftal("fit bush.svg -o nowhere/a.lsys").status, 3);
+    EXPECT_EQ(files(), "again.lsys broken.svg bush.lsys bush.svg found.lsys pen.svg two.csv");
 }
 
 } // namespace

@@ -165,6 +165,42 @@ const std::string ending_operands = R"(
     ground { height: -1.6 }
 )";
 
+/// Operands whose faces coincide, one within the other, and an intersection of which nothing is left.
+const std::string flush_operands = R"(
+    material cut { color: 0.9, 0.7, 0.1 specular: 0 }
+    material within { color: 0.1, 0.4, 0.9 specular: 0 }
+    canonical object corner {
+        difference: cube
+        cube scale: 0.5 translate: 0.5, 0.5, 0.5 material: cut
+    }
+    canonical object tube {
+        difference: cylinder
+        cylinder scale: 0.5, 1, 0.5 material: cut
+    }
+    canonical object slab {
+        intersection: cube
+        cube scale: 1, 0.5, 1 translate: 0, 0.5, 0 material: cut
+    }
+    canonical object step {
+        difference: cube
+        corner scale: 1, 1, 0.5 translate: 0, 0, 0.5 material: within
+    }
+    canonical object nothing {
+        intersection: cube
+        sphere translate: 3, 0, 0
+    }
+    object things {
+        corner rotate: <1, 2, 3>, 20 translate: -2.4, 1, 0
+        tube rotate: <1, 0, 2>, 30 translate: 0, 1.2, -0.5
+        slab rotate: <3, 1, 0>, 25 translate: 2.4, 1, 0
+        step rotate: <1, 2, 0>, 15 translate: 0, 1.2, 2.6
+        nothing
+    }
+    camera { location: 2, 4, 9 look_at: 0.2, 1, 0 angle: 40 }
+    light { sun: -1, 2, 1.5 color: 0.8, 0.7, 0.6 }
+    ground { height: -1.6 }
+)";
+
 const CameraSetting parallel_from_above{.location = Vec3(2.1, 3.3, 1.7),
                                         .look_at = Vec3(0.0),
                                         .up = Vec3(0.2, 0, -1),
@@ -216,6 +252,7 @@ const Question questions[] = {
     {"AddressAlone", "scenes/hart/sierpinski.inst", zoomed("left.up", "", 1)},
     {"EveryPrimitive", "still_life.inst", plain(), 0.1, still_life},
     {"ShapesOfNumbers", "shapes.inst", plain(), 0.1, shapes},
+    {"FlushOperands", "flush_operands.inst", plain(), 0.1, flush_operands},
     {"OperandsWhereLevelsEnd", "ending_operands.inst", stopped_after(1), 0.03, ending_operands},
     {"HalfSpaces", "half_spaces.inst", plain(), 0.1, half_spaces},
     {"MeshAndShapes", "scenes/shapes/shapes.inst", plain(), 0.1},

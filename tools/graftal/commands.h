@@ -33,6 +33,8 @@ int run_animate(const Options& options);
 int run_points(const Options& options);
 int run_collage(const Options& options);
 int run_fit(const Options& options);
+int run_fit_blocks(const Options& options);  ///< `fit --blocks`
+int run_render_pifs(const Options& options); ///< `render FILE.pifs`
 int run_compile(const Options& options);
 int run_export(const Options& options);
 int run_check(const Options& options);

@@ -15,6 +15,8 @@
 #include "compiler/povray/emit/names.h"
 #include "compiler/povray/emit/scene.h"
 #include "compiler/session/stats.h"
+#include "runtime/image_files/image_files.h"
+#include "runtime/inverse/blocks/coded_picture.h"
 #include "runtime/render/native_engine.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/help/documents.h"
@@ -338,6 +340,19 @@ std::string refusal_of_size(const Options& options) {
     return {};
 }
 
+/// The problem with an option of `render` for a .pifs file, or "": it has no camera, parts or light.
+std::string refusal_of_pifs(const CLI::App& command, const Options& options) {
+    constexpr std::string_view of_pifs[] = {"MODEL",  "--output", "--size",    "--bits",
+                                            "--work", "--memory", "--threads", "--quiet"};
+    if (options.in_parts) return "a .pifs file is decoded at once: 'graftal render' does it";
+    for (const CLI::Option* const option : command.get_options())
+        if (option->count() > 0 && std::ranges::find(of_pifs, option->get_name()) == std::end(of_pifs))
+            return fmt::format(
+                "{}: a .pifs file holds the blocks of a picture, and has no use for it: leave it out",
+                option->get_name());
+    return is_exr_name(options.render.output) ? "a .pifs file is decoded to a PNG: name it so" : "";
+}
+
 std::string complete_nothing(Options&) {
     return {};
 }
@@ -398,8 +413,8 @@ constexpr Command commands[] = {
      run_points},
     {"collage", "Measure how well a model's maps cover a target picture", add_collage, complete_nothing,
      run_collage},
-    {"fit", "Find an iterated function system whose attractor is a target picture", add_fit_options,
-     complete_fit, run_fit, ".rifs"},
+    {"fit", "Find a model: of a picture's maps, or of a drawing's L-system", add_fit_options, complete_fit,
+     run_fit, ".rifs"},
     {"compile", "Write a model as a POV-Ray scene", add_compile, complete_compile, run_compile, ".pov"},
     {"export", "Write a model for other programs: Blender, web pages, printers, renderers", add_export,
      complete_export, run_export, ".glb"},
@@ -505,7 +520,9 @@ ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_par
     if (chosen() == "farm")
         return {std::nullopt, usage_error("farm: name a step: plan, submit, status, merge or clean", "farm")};
     options.draws = chosen_command().get_option_no_throw("--engine") != nullptr;
-    const std::string problem = complete(options);
+    std::string problem = complete(options);
+    if (problem.empty() && chosen() == "render" && is_pifs_name(options.operands.front()))
+        problem = refusal_of_pifs(chosen_command(), options);
     if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
 
     options.animation.identity = frame_identity(*app.get_subcommands().front(), *options.engine);

@@ -13,11 +13,11 @@ OPTIONS = {
                '--zoom', '--at', '--camera'],
     'animate': ['--frames', '--fps', '--turn', '--ease', '--camera', '--zoom', '--keep-frames'],
     'stats': ['--json', '--work'], 'check': ['--work'], 'print': ['--after', '--work'], 'graph': ['--after', '--work'], 'collage': ['--threshold', '--light', '--json'],
-    'compare': ['--threshold', '-q'], 'fit': ['--maps', '--similar', '--threshold', '--light', '--start', '--json'],
+    'compare': ['--threshold', '-q'], 'fit': ['--maps', '--similar', '--threshold', '--light', '--start', '--json', '--blocks', '--tolerance'],
 }
 COMMON = ['--steps', '--set', '--seed', '--exact', '--memory', '--threads', '--dump-after', '--time', '-q', '--root']
 FLAGS = {'--test-linear', '--progressive', '--no-progressive', '--aovs', '--flatten', '--visible-only', '--transparent', '--json', '--light', '--exact', '--time', '-q',
-         '--keep-frames', '--similar', '--instancing', '--plotter'}
+         '--keep-frames', '--similar', '--blocks', '--instancing', '--plotter'}
 VALUES = {
     '--size': [*SMALL, *SMALL, '32768x1', '0x0', '64', '99999x99999'],
     '--tile': ['0,0,8x8', '60,30,9x9', '0,0,1x1', '-1,0,1x1', '0,0,0x0', '1,2', '2147483647,0,1x1', ',,x'],
@@ -52,7 +52,7 @@ def command(draw, model, others):
     elif name == 'collage':
         words += [draw.pick(others), model]
     elif name == 'fit':
-        words += [draw.pick(others), '-o', 'out.rifs', '--work', '0.2']
+        words += [draw.pick(others), '-o', draw.pick(['out.rifs', 'out.pifs']), '--work', '0.2']
     else:
         words.append(model)
     for _ in range(draw.pick([0, 1, 1, 2, 3, 5])):

@@ -164,6 +164,7 @@ class Printer {
         if (haze.base != 0) print_numbers("  base", {haze.base});
         print_number("  height", haze.height);
         print_vector("  color", haze.rgb);
+        if (haze.sun != 0) print_numbers("  sun", {haze.sun});
         out_ += "}\n";
     }
 

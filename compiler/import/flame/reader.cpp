@@ -129,6 +129,10 @@ std::optional<Flame> Reader::read(const pugi::xml_node& node) {
     if (background.size() == 3)
         for (std::size_t i = 0; i < 3; ++i)
             flame.background[i] = std::clamp(background[i], 0.0, 1.0);
+    // The camera in space, of flames that leave the plane.
+    for (const char* const name :
+         {"cam_pitch", "cam_yaw", "cam_perspective", "cam_persp", "cam_zpos", "cam_zdimish", "cam_dof"})
+        if (node.attribute(name).as_double() != 0) leave_out(span(node), name);
     for (const pugi::xml_node& child : node.children()) {
         const std::string_view name = child.name();
         if (name == "xform" || name == "finalxform") {
@@ -250,15 +254,16 @@ void Reader::read_variations(const pugi::xml_node& node, Map& map) {
         const std::string_view owner = attributes.variation_of(name);
         if (leaves_the_plane(name)) {
             flat = true;
+            if (value != 0 && name.find("flatten") == std::string::npos) leave_out(map.span, name);
         } else if (is_variation(name)) {
             if (!number)
                 fail(fmt::format("'{}' takes a number, not '{}'", name, comment_text(attribute.value())));
             else if (value != 0)
                 map.variations.emplace_back(name, value);
         } else if (const std::string_view curve = attributes.curve_of(name); !curve.empty()) {
-            leave_out(map, fmt::format("{}_*", curve));
+            leave_out(map.span, fmt::format("{}_*", curve));
         } else if (!number || is_left_out(name)) {
-            leave_out(map, name);
+            leave_out(map.span, name);
         } else if (name.ends_with("_fx_priority") && is_variation(owner) && value != 0) {
             fail(fmt::format("'{}' is not translated: the variation is no summand of its map", name));
         } else if (!owner.empty()) {
@@ -266,7 +271,7 @@ void Reader::read_variations(const pugi::xml_node& node, Map& map) {
         } else if (value != 0) {
             unknown.push_back(name);
         } else {
-            leave_out(map, name);
+            leave_out(map.span, name);
         }
     }
     // Variations that no file of flam3 has may have numbers of any name: these stand or fall with them.
@@ -280,9 +285,9 @@ void Reader::read_variations(const pugi::xml_node& node, Map& map) {
         map.variations.emplace_back("linear", flat ? 0 : 1);
 }
 
-void Reader::leave_out(const Map& map, const std::string& attribute) {
+void Reader::leave_out(const Span& at, const std::string& attribute) {
     left_out_.insert(comment_text(attribute));
-    if (!left_out_span_.known()) left_out_span_ = map.span;
+    if (!left_out_span_.known()) left_out_span_ = at;
 }
 
 void Reader::report_left_out() {

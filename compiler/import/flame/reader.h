@@ -88,7 +88,7 @@ class Reader {
     Map read_map(const pugi::xml_node& node);
     void read_variations(const pugi::xml_node& node, Map& map);
     void read_old_variations(const pugi::xml_node& node, Map& map);
-    void leave_out(const Map& map, const std::string& attribute);
+    void leave_out(const Span& at, const std::string& attribute);
     void report_left_out();
     const ForeignFile& file_;
     std::set<std::string> left_out_; ///< attributes of the flame that is read, or `curve_*`

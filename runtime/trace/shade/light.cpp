@@ -42,20 +42,24 @@ Rgb Shader::of_lamps(const Point& point, double least, SampleStream& random) {
     Rgb shining(0.0);
     for (const Lamp& lamp : lamps_)
         shining += light_of(lamp, point, least);
-    for (const Area& area : areas_) {
-        glm::dvec2 place = random.next();
-        if (area.round) {
-            const double radius = std::sqrt(place.x), turn = 2 * std::numbers::pi * place.y;
-            place = {radius * std::cos(turn), radius * std::sin(turn)};
-        } else {
-            place = 2.0 * place - 1.0;
-        }
-        Lamp part = area.middle;
-        part.at += place.x * area.a + place.y * area.b;
-        if (part.sun) part.at = glm::normalize(part.at);
-        shining += light_of(part, point, least);
-    }
+    for (const Area& area : areas_)
+        shining += light_of(part_of(area, random), point, least);
     return shining;
+}
+
+/// One point of an area by chance.
+Shader::Lamp Shader::part_of(const Area& area, SampleStream& random) {
+    glm::dvec2 place = random.next();
+    if (area.round) {
+        const double radius = std::sqrt(place.x), turn = 2 * std::numbers::pi * place.y;
+        place = {radius * std::cos(turn), radius * std::sin(turn)};
+    } else {
+        place = 2.0 * place - 1.0;
+    }
+    Lamp part = area.middle;
+    part.at += place.x * area.a + place.y * area.b;
+    if (part.sun) part.at = glm::normalize(part.at);
+    return part;
 }
 
 /// `shine_only`: without what is scattered.

@@ -95,13 +95,13 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
         if (light.is_area()) {
             areas_.push_back({lamp, light.a, light.b, light.round});
         } else if (light.is_disc()) {
-            const auto [a, b] = axes_across(at);
-            const double radius = std::tan(0.5 * light.angle_deg * std::numbers::pi / 180);
-            areas_.push_back({lamp, radius * a, radius * b, true});
+            areas_.push_back(disc_of(light, lamp));
         } else {
             lamps_.push_back(lamp);
         }
     }
+    if (const Light* sun = view.sun_of_haze(); sun && !listed)
+        haze_sun_ = disc_of(*sun, {glm::normalize(sun->location), sun->rgb, true, sun->shadowless});
     if (view.sky_light) {
         ambient_light_ = view.ambient_light();
         if (!listed) {
@@ -134,6 +134,12 @@ Shader::Shader(const View& view, Surfaces& surfaces, const ShaderLimits& limits,
 }
 
 Shader::~Shader() = default;
+
+Shader::Area Shader::disc_of(const Light& sun, const Lamp& middle) {
+    const auto [a, b] = axes_across(middle.at);
+    const double radius = std::tan(0.5 * sun.angle_deg * std::numbers::pi / 180);
+    return {middle, radius * a, radius * b, true};
+}
 
 void Shader::look_ahead(std::span<const Ray> rays, Ahead& ahead) {
     ahead.met = surfaces_.closest_each(rays, {0, limits_.farthest}, ahead.hits);
@@ -176,7 +182,7 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Kn
         if (view_.haze) {
             const double length = found || caught > 0 ? hit.t : std::min(limits_.farthest, largest_size);
             const double left = view_.haze->left_after(path.ray.origin, path.ray.direction, length);
-            sum += (1 - left) * path.weight * view_.haze->rgb;
+            sum += (1 - left) * path.weight * light_of_haze(path, length, random);
             path.weight *= left;
         }
         if (caught > 0) {
@@ -205,6 +211,21 @@ Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Kn
         path.range.least = least_distance(point.position, path.bounces > 0 ? shadow_pixels : mirror_pixels);
     }
     return sum;
+}
+
+/// The colour of the haze along a path of this length. Of the sun's share, one place and one point of the sun
+/// tell by a ray. Where light has bounced, the share is even: there nobody sees shafts.
+Rgb Shader::light_of_haze(const Path& path, double length, SampleStream& random) {
+    const Haze& haze = *view_.haze;
+    if (!haze_sun_ || path.bounces > 0) return haze.rgb;
+    const Lamp sun = part_of(*haze_sun_, random);
+    const Vec3 place =
+        path.ray(haze.length_of_share(path.ray.origin, path.ray.direction, length, random.next().x));
+    const double scattered = haze.sun * Haze::scattered(path.ray.direction, sun.at);
+    const Rgb seen =
+        sun.shadowless ? Rgb(1.0)
+                       : light_through({place, sun.at}, {least_distance(place, shadow_pixels)}, path.inside);
+    return (1 - haze.sun + scattered * seen) * haze.rgb;
 }
 
 /// The way on from a surface, backwards along the light: its refracted ray, while the mirrored one waits.

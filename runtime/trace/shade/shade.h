@@ -88,7 +88,7 @@ class Shader {
     std::uint64_t work() const { return work_; }
 
     /// True where radiance() estimates: more samples make a better picture.
-    bool samples() const { return sky_ || !areas_.empty(); }
+    bool samples() const { return sky_ || !areas_.empty() || haze_sun_; }
 
     /// The first surface that the ray meets, the ground included; false if that is the sky.
     bool first_hit(const Ray& ray, SurfaceHit& hit);
@@ -143,6 +143,9 @@ class Shader {
     bool scatter(Path& path, const Point& point, double choice, SampleStream& random) const;
     Rgb light_of(const Lamp& lamp, const Point& point, double least);
     Rgb light_through(Ray to_light, RayRange range, const Inside& start);
+    Rgb light_of_haze(const Path& path, double length, SampleStream& random);
+    static Area disc_of(const Light& sun, const Lamp& middle);
+    static Lamp part_of(const Area& area, SampleStream& random);
     Rgb sky(Vec3 direction) const;
     double least_distance(Vec3 point, double pixels) const;
 
@@ -151,6 +154,7 @@ class Shader {
     const ShaderLimits limits_;
     std::vector<Lamp> lamps_;                 ///< without those that are black
     std::vector<Area> areas_;                 ///< sampled ones
+    std::optional<Area> haze_sun_;            ///< the sun that haze shows in shafts
     const SkyLight* sky_ = nullptr;           ///< null unless it is sampled
     const SkySampling* bright_sky_ = nullptr; ///< where it has bright parts
     std::vector<Path> waiting_;               ///< of the ray under way: what is to be followed still

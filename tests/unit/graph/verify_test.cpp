@@ -222,6 +222,7 @@ TEST_F(Verify, EveryNumberOfTheSettingsIsFinite) {
         {"haze", [](SceneSettings& s, double x) { s.haze->base = x; }},
         {"haze", [](SceneSettings& s, double x) { s.haze->height = x; }},
         {"haze", [](SceneSettings& s, double x) { s.haze->rgb = Rgb(0, x, 0); }},
+        {"haze", [](SceneSettings& s, double x) { s.haze->sun = x; }},
     };
     SceneSettings whole;
     whole.camera.emplace();

@@ -139,6 +139,10 @@ TEST_F(Povray, LostObjectIsNoSuccess) {
     job_.finite_objects = 2;
     EXPECT_EQ(run_povray(job_).status.message(),
               "POV-Ray found 1 objects in a scene of 2: the picture is wrong");
+    job_.may_be_empty = 1;
+    EXPECT_TRUE(run_povray(job_).status.ok());
+    job_.finite_objects = 3;
+    EXPECT_FALSE(run_povray(job_).status.ok());
 }
 
 TEST_F(Povray, MissingPovraySaysHowToInstallIt) {

@@ -71,6 +71,7 @@ COMMANDS = {
     'compare, .exr': (['compare', 'models/a.exr', 'models/a.exr'], None),
     'collage': (['collage', 'models/target.png', 'models/flat.rifs'], None),
     'fit': (['fit', 'models/target.png', '--work', '0.2', '--threads', '2'], 'out.rifs'),
+    'fit, --blocks': (['fit', '--blocks', 'models/target.png', '--work', '0.2', '--threads', '2'], 'out.pifs'),
 }
 if shutil.which('ffmpeg'):
     COMMANDS['animate, native, .mp4'] = ([*TURN, *NATIVE], 'out.mp4')

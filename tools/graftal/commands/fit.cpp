@@ -2,6 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/inverse/found_model.h"
+#include "runtime/inverse/lsystem/drawing_file.h"
+#include "runtime/inverse/lsystem/found_lsystem.h"
 #include "runtime/system/file.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
@@ -22,6 +24,7 @@ FindOptions find_options(const Options& options) {
     find.search.rules.similar = options.fit.similar;
     find.search.seconds = options.render.work_seconds.value_or(find.search.seconds);
     find.search.seed = options.render.compile.lower.seed.value_or(find.search.seed);
+    find.in_colour = options.fit.in_colour;
     find.start = options.fit.start;
     find.compile = inspecting(options, true);
     find.made_by = options.render.metadata.description;
@@ -33,18 +36,25 @@ Json fit_json(const Options& options, const FoundModel& found) {
     Json maps = Json::array();
     for (const PlaneMap& m : found.maps)
         maps.push_back({m.a, m.b, m.c, m.d, m.e, m.f});
-    return {{"target", options.points.target},
-            {"model", options.render.output},
-            {"target_cells", found.cells},
-            {"cell_pixels", found.cell},
-            {"maps", std::move(maps)},
-            {"iou", found.agreement.strict},
-            {"iou_within_a_cell", found.agreement.tolerant},
-            {"chamfer_cells", found.agreement.chamfer},
-            {"contractivity", found.contractivity},
-            {"epsilon_cells", found.epsilon},
-            {"bound_cells", found.bound},
-            {"work_seconds", found.seconds}};
+    Json json = {{"target", options.points.target},
+                 {"model", options.render.output},
+                 {"target_cells", found.cells},
+                 {"cell_pixels", found.cell},
+                 {"maps", std::move(maps)},
+                 {"iou", found.agreement.strict},
+                 {"iou_within_a_cell", found.agreement.tolerant},
+                 {"chamfer_cells", found.agreement.chamfer},
+                 {"contractivity", found.contractivity},
+                 {"epsilon_cells", found.epsilon},
+                 {"bound_cells", found.bound},
+                 {"work_seconds", found.seconds}};
+    if (!found.colours) return json;
+    Json tints = Json::array();
+    for (const Rgb& rgb : found.colours->of_map)
+        tints.push_back({rgb.r, rgb.g, rgb.b, found.colours->alpha});
+    json["tints"] = std::move(tints);
+    json["colour_rms_255"] = found.colours->rms_255;
+    return json;
 }
 
 std::string fit_text(const Options& options, const FoundModel& found) {
@@ -53,16 +63,72 @@ std::string fit_text(const Options& options, const FoundModel& found) {
         "agreement      IoU {:.3f}, within one cell {:.3f}; Chamfer distance {:.2f} cells\n"
         "target         {} cells in {}x{}: those with pixels {}; a cell is {:g} pixel{} wide\n"
         "collage        epsilon {:.2f} cells; the attractor is at most {:.1f} cells from the target\n"
-        "work           {:.1f} s, counted\n",
+        "{}work           {:.1f} s, counted\n",
         options.render.output, found.maps.size(), found.contractivity, found.agreement.strict,
         found.agreement.tolerant, found.agreement.chamfer, found.cells, found.width, found.height,
         criterion_text(options.points.criterion, found.by_alpha), found.cell, found.cell == 1 ? "" : "s",
-        found.epsilon, found.bound, found.seconds);
+        found.epsilon, found.bound,
+        found.colours ? fmt::format("colours        {:.1f} of 255 from the target's, root mean square\n",
+                                    found.colours->rms_255)
+                      : "",
+        found.seconds);
+}
+
+Json lsystem_json(const Options& options, const FoundLsystem& found) {
+    return {{"target", options.points.target},
+            {"model", options.render.output},
+            {"lines", found.strokes},
+            {"redrawn", found.redrawn},
+            {"farthest_units", found.farthest},
+            {"letters", found.letters},
+            {"steps", found.steps},
+            {"angle_deg", found.angle_deg},
+            {"factor", found.factor},
+            {"work_seconds", found.seconds}};
+}
+
+std::string lsystem_report(const Options& options, const FoundLsystem& found) {
+    return fmt::format("{}: an L-system of {} letters, for {} lines\n"
+                       "agreement      it draws {} of {} lines, no farther than {:.2g} units away\n"
+                       "drawing        angle {:g}, {} steps{}\n"
+                       "work           {:.1f} s, counted\n",
+                       options.render.output, found.letters, found.strokes, found.redrawn, found.strokes,
+                       found.farthest, found.angle_deg, found.steps,
+                       found.factor == 1 ? "" : fmt::format(", lengths by {:g} a step", found.factor),
+                       found.seconds);
+}
+
+int run_fit_lsystem(const Options& options) {
+    ProgressBar bar(!options.quiet);
+    FindLsystemOptions find;
+    find.drawing = options.points.target;
+    find.tolerance = options.fit.tolerance.value_or(find.tolerance);
+    find.seconds = options.render.work_seconds.value_or(find.seconds);
+    find.compile = inspecting(options, true);
+    find.made_by = options.render.metadata.description;
+    find.on_progress = [&](double share, int round) {
+        bar.show("searching", share, fmt::format(", round {}", round + 1));
+    };
+    Compilation compilation;
+    const Interruption interruption;
+    const std::optional<FoundLsystem> found = find_lsystem(find, interruption.flag(), compilation);
+    if (found) compilation.status = write_text(options.render.output, found->text);
+    bar.clear();
+    const int status = conclude(options, compilation, interruption.signal());
+    if (!found || !compilation.status.ok()) return status;
+    if (options.json) {
+        const int printed = print_output(lsystem_json(options, *found).dump(2) + "\n");
+        return status == exit_done ? printed : status;
+    }
+    if (!options.quiet) say(lsystem_report(options, *found));
+    return status;
 }
 
 } // namespace
 
 int run_fit(const Options& options) {
+    if (options.fit.blocks) return run_fit_blocks(options);
+    if (is_drawing_name(options.points.target)) return run_fit_lsystem(options);
     ProgressBar bar(!options.quiet);
     FindOptions find = find_options(options);
     find.on_progress = [&](const SearchProgress& progress) {

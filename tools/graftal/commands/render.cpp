@@ -2,6 +2,7 @@
 
 #include "compiler/detail/coarser.h"
 #include "compiler/povray/cut/compile.h"
+#include "runtime/inverse/blocks/coded_picture.h"
 #include "runtime/render/povray_engine.h"
 #include "runtime/render/render.h"
 #include "runtime/render/scene_files.h"
@@ -38,6 +39,7 @@ std::string start_text(const Engine& engine, const RenderOptions& render, const 
 } // namespace
 
 int run_render(const Options& options) {
+    if (is_pifs_name(options.operands.front())) return run_render_pifs(options);
     if (options.watch) return run_watch(options);
     ProgressBar bar(!options.quiet);
     RenderOptions render = options.render;

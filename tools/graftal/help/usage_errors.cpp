@@ -81,8 +81,10 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& command)
     if (dynamic_cast<const CLI::ValidationError*>(&error)) return message; // said by ourselves
     if (dynamic_cast<const CLI::ExtrasError*>(&error)) return extra_words(command);
     const CLI::Option* const option = option_in(message, command);
+    const std::string other = message.substr(message.rfind(' ') + 1);
+    if (dynamic_cast<const CLI::RequiresError*>(&error) && option)
+        return fmt::format("{} needs {}: give both, or neither", option->get_name(), other);
     if (dynamic_cast<const CLI::ExcludesError*>(&error) && option) {
-        const std::string other = message.substr(message.rfind(' ') + 1);
         return fmt::format("{} and {} exclude each other: give only one of them", option->get_name(), other);
     }
     if (option) return fmt::format("{} needs a value: {}", option->get_name(), option_text(*option));

@@ -8,6 +8,7 @@
 
 #include "compiler/import/importers.h"
 #include "compiler/support/number.h"
+#include "runtime/inverse/lsystem/drawing_file.h"
 #include "runtime/points/card.h"
 #include "runtime/points/draw_points.h"
 #include "tools/graftal/options/shared.h"
@@ -158,13 +159,12 @@ std::string complete_points(Options& options) {
 
 namespace {
 
+constexpr const char* target_help =
+    "Picture of the target set: its dark pixels, or its opaque pixels if it has an alpha channel";
+
 /// The picture of a target, and which of its pixels are meant.
-void add_target(CLI::App& app, Options& options) {
-    app.add_option(
-           "TARGET", options.points.target,
-           "Picture of the target set: its dark pixels, or its opaque pixels if it has an alpha channel")
-        ->required()
-        ->type_name("");
+void add_target(CLI::App& app, Options& options, const std::string& help) {
+    app.add_option("TARGET", options.points.target, help)->required()->type_name("");
     add_value(app, "--threshold", "T",
               "Pixels darker than this, or at least this opaque, belong to the target (default 0.5)",
               "a number from 0 to 1", parse_share,
@@ -175,7 +175,7 @@ void add_target(CLI::App& app, Options& options) {
 } // namespace
 
 void add_collage_options(CLI::App& app, Options& options) {
-    add_target(app, options);
+    add_target(app, options, target_help);
     const auto set = [&options](const std::string& model) { options.operands = {model}; };
     app.add_option_function<std::string>("MODEL", set, "Model file of a flat iterated function system, or -")
         ->required()
@@ -190,9 +190,12 @@ void add_collage_options(CLI::App& app, Options& options) {
 
 void add_fit_options(CLI::App& app, Options& options) {
     FitSettings& fit = options.fit;
-    add_target(app, options);
-    app.add_option("-o,--output", options.render.output,
-                   "Model to write, .rifs (default: TARGET's name + .rifs, in this folder)")
+    add_target(app, options,
+               std::string(target_help) + "; or a drawing (.svg, .csv, .txt, .lsys), for an L-system");
+    app.add_option(
+           "-o,--output", options.render.output,
+           "Model to write: .rifs, .lsys for a drawing, or .pifs with --blocks (default: TARGET's name, in "
+           "this folder)")
         ->type_name("FILE");
     add_value(
         app, "--maps", "N", "Most maps of the system (default 8)", "a whole number from 2 to 24",
@@ -200,11 +203,26 @@ void add_fit_options(CLI::App& app, Options& options) {
         [&fit](std::uint64_t maps) { fit.most_maps = static_cast<std::size_t>(maps); });
     app.add_flag("--similar", fit.similar,
                  "Only maps that keep angles: turns, mirrors and one factor of size");
+    app.add_flag("--color", fit.in_colour,
+                 "Give each map a tint, so that the model has the target's colours");
     app.add_option(
            "--start", fit.start,
            "Model to begin with: a flat iterated function system in the frame in which graftal writes "
            "them")
         ->type_name("MODEL");
+    CLI::Option* const blocks = app.add_flag(
+        "--blocks", fit.blocks,
+        "Code the whole picture, grey or in colour, by blocks that are copies of larger ones: a .pifs "
+        "file, which 'graftal render' decodes at any size");
+    for (const char* const other : {"--threshold", "--light", "--maps", "--similar", "--color", "--start"})
+        blocks->excludes(other);
+    add_value(app, "--tolerance", "X",
+              "With --blocks: error that photographs then have, about, root mean square in levels of 255; "
+              "less makes "
+              "larger files (default 8). Of a drawing: ends of lines meet where they are no farther apart, "
+              "as a share of "
+              "the shortest line (default 0.01)",
+              "a number", parse_number, [&fit](double tolerance) { fit.tolerance = tolerance; });
     add_work(app, options,
              "Limit of the search, roughly in seconds of one processor, by counted work (default 30)");
     app.add_flag("--json", options.json, "Print one JSON object on standard output");
@@ -216,14 +234,33 @@ void add_fit_options(CLI::App& app, Options& options) {
         "  graftal fit leaf.png                                   # makes leaf.rifs\n"
         "  graftal fit leaf.png --maps 4 --work 120 --seed 7 -o other.rifs\n"
         "  graftal fit leaf.png --start leaf.rifs                 # goes on from there\n"
-        "  graftal points leaf.rifs --size 400x400 -o again.png   # the target's size gives its frame");
+        "  graftal fit curve.svg                                  # an L-system: makes curve.lsys\n"
+        "  graftal points leaf.rifs --size 400x400 -o again.png   # the target's size gives its frame\n"
+        "  graftal fit --blocks photo.png --tolerance 5           # makes photo.pifs\n"
+        "  graftal render photo.pifs --size 2048x2048");
 }
 
 std::string complete_fit(Options& options) {
     std::string& output = options.render.output;
-    if (output.empty()) output = model_stem(options.points.target) + ".rifs";
-    if (output != "-" && !output.ends_with(".rifs"))
-        return fmt::format("'{}': the name of the model must end in .rifs", output);
+    const FitSettings& fit = options.fit;
+    const bool draws = is_drawing_name(options.points.target) && !fit.blocks;
+    const std::string ending = fit.blocks ? ".pifs" : draws ? ".lsys" : ".rifs";
+    if (output.empty()) output = model_stem(options.points.target) + ending;
+    if (output != "-" && !output.ends_with(ending))
+        return fmt::format("'{}': the name of the model must end in {}", output, ending);
+    if (output == options.points.target)
+        return fmt::format("'{}' is the drawing: name another file by -o", output);
+    if (fit.tolerance) {
+        if (!draws && !fit.blocks)
+            return "--tolerance is for drawings (.svg, .csv, .txt and .lsys), and for --blocks";
+        const double least = draws ? 1e-6 : 0, most = draws ? 0.2 : 255;
+        if (!(*fit.tolerance >= least && *fit.tolerance <= most))
+            return fmt::format("--tolerance: '{}' is not a number from {} to {}", shortest(*fit.tolerance),
+                               shortest(least), shortest(most));
+    }
+    if (draws &&
+        (fit.similar || fit.in_colour || !fit.start.empty() || fit.most_maps != FitSettings().most_maps))
+        return "--maps, --similar, --color and --start are for pictures, and not for drawings";
     if (output == "-" && options.json)
         return "--json prints where '-o -' writes the model: leave one of them out";
     return {};

@@ -266,7 +266,9 @@ void add_view(CLI::App& app, Options& options) {
 
 void add_model(CLI::App& app, Options& options) {
     const auto set = [&options](const std::string& model) { options.operands = {model}; };
-    const std::string help = "Model file (.lsys, .rifs, .inst)";
+    const std::string help = app.get_name() == "render"
+                                 ? "Model file (.lsys, .rifs, .inst, or .pifs of 'graftal fit --blocks')"
+                                 : "Model file (.lsys, .rifs, .inst)";
     app.add_option_function<std::string>("MODEL", set,
                                          can_sweep(app) ? help : help + ", or - for standard input")
         ->required()

@@ -96,6 +96,9 @@ TEST(Flame, AttributesAreNoVariations) {
                                         "'label', 'material', 'mod_hue', 'someCurve_*', 'weird', 'wobble', "
                                         "'yzCoefs'\n"));
     EXPECT_EQ(imported("name=\"left\" chaos=\"1 1\" julian_power=\"3\" swirl=\"0\"").said(), "");
+    EXPECT_THAT(imported("flatten=\"1\" zscale=\"0.5\" ztranslate=\"0.3\" zcone=\"0\"").said(),
+                HasSubstr("warning: the flame is drawn without the attributes 'zscale', 'ztranslate'\n"))
+        << "what leads out of the plane is named";
     EXPECT_THAT(imported("swirl=\"true\"").said(), HasSubstr("error: 'swirl' takes a number, not 'true'"));
     EXPECT_THAT(imported("linear_fx_priority=\"-1\"").said(),
                 HasSubstr("'linear_fx_priority' is not translated"));

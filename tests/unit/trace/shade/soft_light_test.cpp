@@ -107,6 +107,33 @@ TEST(SoftLight, ADiscSunLightsLikeItsMiddleAndCastsAPenumbra) {
     EXPECT_NEAR(mean_light(shadowed, ahead, 4096).r, 0.75 * std::cos(angle), 0.01);
 }
 
+/// A ball beside the ray takes the sun's share from a stretch of it.
+TEST(SoftLight, HazeShowsTheSunBesideShadows) {
+    View view = black_view();
+    view.lights = {{.location = {1, 0, 0}, .sun = true, .rgb = Rgb(1.0)}};
+    const double distance = 8, share = 0.75, radius = 2;
+    view.haze = Haze{.rgb = {0.5, 0.25, 1}, .distance = distance, .height = INFINITY, .sun = share};
+    const double aside = 0.64 / std::pow(1.36, 1.5);
+    Scene open;
+    Shader unshadowed(view, open);
+    const Rgb whole = mean_light(unshadowed, ahead, 16);
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(whole[c], (1 - share + share * aside) * view.haze->rgb[c], 1e-9);
+
+    Scene shadowing;
+    shadowing.balls.push_back({ahead(10) + Vec3(5, 0, 0), radius, Rgb(1.0), matt});
+    Shader shadowed(view, shadowing);
+    const double lost = std::exp(-(10 - radius) / distance) - std::exp(-(10 + radius) / distance);
+    EXPECT_NEAR(mean_light(shadowed, ahead, 1 << 14).b, whole.b - share * aside * lost, 0.003);
+
+    view.lights.front().shadowless = true;
+    Shader shadowless(view, shadowing);
+    EXPECT_NEAR(mean_light(shadowless, ahead, 16).b, whole.b, 1e-9);
+    view.lights.clear();
+    Shader without(view, shadowing);
+    EXPECT_NEAR(mean_light(without, ahead, 16).b, 1, 1e-9) << "no sun: the haze's own light";
+}
+
 /// The estimate and the list have the same limit: all of a material, and a sky that is not even.
 TEST(SoftLight, SamplesAndLongListsAgree) {
     View view = black_view();

@@ -1,0 +1,203 @@
+#include "runtime/inverse/lsystem/growth.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace graftal {
+
+namespace {
+
+constexpr unsigned most_steps = 14;
+constexpr std::uint8_t most_axiom_letters = 6;
+constexpr double seconds_of_growth = 1e-7; ///< of one table of numbers, for all steps
+
+using Counts = Growth::Counts;
+
+/// All rows with bounds on their numbers, and from one letter to `most` in all.
+std::vector<Counts> rows(std::size_t letters, const Counts& bounds, std::size_t most) {
+    std::vector<Counts> found;
+    Counts row{};
+    const auto fill = [&](const auto& self, std::size_t at, std::size_t left) -> void {
+        if (at == letters) {
+            if (left < most) found.push_back(row);
+            return;
+        }
+        for (std::size_t n = 0; n <= std::min<std::size_t>(bounds[at], left); ++n) {
+            row[at] = static_cast<std::uint8_t>(n);
+            self(self, at + 1, left - n);
+        }
+        row[at] = 0;
+    };
+    fill(fill, 0, most);
+    return found;
+}
+
+/// Whether the axiom's letter leads to all letters, apart from the first where it is straight.
+bool reaches_all(const Growth& growth) {
+    if (!growth.by_letter) return true;
+    std::array<bool, Growth::most_letters> seen{};
+    seen[growth.axiom_letter] = true;
+    for (std::size_t round = 0; round < growth.letters; ++round)
+        for (std::size_t from = 0; from < growth.letters; ++from)
+            for (std::size_t to = 0; to < growth.letters; ++to)
+                if (seen[from] && growth.rules[from][to] > 0) seen[to] = true;
+    return std::all_of(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(growth.letters),
+                       [](bool reached) { return reached; });
+}
+
+/// Whether exchanging letters that no axiom tells apart gives a table that is listed before.
+bool is_repeated(const Growth& growth) {
+    for (std::size_t a = 0; a < growth.letters; ++a)
+        for (std::size_t b = a + 1; b < growth.letters; ++b) {
+            const bool alike = (a < growth.drawn) == (b < growth.drawn) && a != growth.axiom_letter &&
+                               b != growth.axiom_letter && !(growth.straight && a == 0);
+            if (!alike) continue;
+            std::array<Counts, Growth::most_letters> other = growth.rules;
+            std::swap(other[a], other[b]);
+            for (Counts& row : other)
+                std::swap(row[a], row[b]);
+            if (other < growth.rules) return true;
+        }
+    return false;
+}
+
+class GrowthTable {
+  public:
+    GrowthTable(std::uint64_t segments, WorkMeter& meter) : segments_(segments), meter_(meter) {}
+
+    /// Adds the growth with each number of steps, and of letters of the axiom, that suits.
+    void try_steps(Growth growth) {
+        meter_.add(1, seconds_of_growth);
+        std::array<std::uint64_t, Growth::most_letters> drawn{};
+        std::fill_n(drawn.begin(), growth.drawn, 1);
+        bool checked = false;
+        for (unsigned step = 1; step <= most_steps; ++step) {
+            std::array<std::uint64_t, Growth::most_letters> next{};
+            for (std::size_t rule = 0; rule < growth.letters; ++rule)
+                for (std::size_t letter = 0; letter < growth.letters; ++letter)
+                    next[rule] += growth.rules[rule][letter] * drawn[letter];
+            const bool grows = next != drawn;
+            drawn = next;
+            const std::uint64_t count = drawn[growth.axiom_letter];
+            if (count > segments_ || !grows) return;
+            if (step < 2 || count == 0 || segments_ % count != 0 || segments_ / count > most_axiom_letters)
+                continue;
+            if (!checked && (!reaches_all(growth) || is_repeated(growth))) return;
+            checked = true;
+            growth.steps = step;
+            growth.axiom = static_cast<std::uint8_t>(segments_ / count);
+            found_.push_back(growth);
+        }
+    }
+
+    /// Tries all tables whose rules are rows of these lists, by letter.
+    void try_rows(Growth growth, const std::vector<std::vector<Counts>>& lists, std::size_t most_size,
+                  std::size_t at = 0) {
+        if (at == growth.letters) {
+            if (growth.size() <= most_size) try_steps(growth);
+            return;
+        }
+        for (const Counts& row : lists[at]) {
+            growth.rules[at] = row;
+            try_rows(growth, lists, most_size, at + 1);
+        }
+    }
+
+    std::vector<Growth> sorted() {
+        std::ranges::stable_sort(found_, [](const Growth& a, const Growth& b) {
+            return a.size() != b.size() ? a.size() < b.size() : a.steps > b.steps;
+        });
+        return std::move(found_);
+    }
+
+  private:
+    std::uint64_t segments_;
+    WorkMeter& meter_;
+    std::vector<Growth> found_;
+};
+
+/// Letters that all draw, with rules of their own.
+void add_edge_systems(GrowthTable& table) {
+    for (std::uint8_t letters = 1; letters <= 2; ++letters)
+        for (std::uint8_t length = 2; length <= 40; ++length) {
+            Growth growth{.letters = letters, .drawn = letters, .by_letter = letters == 1};
+            for (std::size_t rule = 0; rule < letters; ++rule)
+                growth.rules[rule][0] = length;
+            table.try_steps(growth);
+        }
+    const std::vector<Counts> two = rows(2, {8, 8}, 8);
+    table.try_rows({.letters = 2, .drawn = 2}, {two, two}, 17);
+}
+
+/// A letter that draws, and grows straight; others mark where rules go on.
+void add_node_systems(GrowthTable& table, std::uint8_t straight) {
+    Growth growth{.drawn = 1, .straight = straight, .axiom_letter = 1};
+    growth.rules[0][0] = straight;
+    for (std::uint8_t hidden = 1; hidden <= 3; ++hidden)
+        for (std::uint8_t segments = 1; segments <= 40; ++segments)
+            for (std::uint8_t nodes = 1; nodes <= 30; ++nodes) {
+                growth.letters = 1 + hidden;
+                growth.by_letter = hidden == 1;
+                for (std::size_t rule = 1; rule <= hidden; ++rule)
+                    growth.rules[rule] = {segments, nodes};
+                table.try_steps(growth);
+            }
+    growth.by_letter = true;
+    growth.letters = 3;
+    const std::vector<Counts> two = rows(3, {7, 5, 5}, 10);
+    table.try_rows(growth, {{growth.rules[0] = {straight}}, two, two}, 20);
+}
+
+void add_three_edges(GrowthTable& table) {
+    const std::vector<Counts> three = rows(3, {4, 4, 4}, 6);
+    table.try_rows({.letters = 3, .drawn = 3}, {three, three, three}, 18);
+}
+
+void add_three_nodes(GrowthTable& table, std::uint8_t straight) {
+    Growth growth{.letters = 4, .drawn = 1, .straight = straight, .axiom_letter = 1};
+    growth.rules[0][0] = straight;
+    const std::vector<Counts> three = rows(4, {3, 3, 3, 3}, 6);
+    table.try_rows(growth, {{growth.rules[0]}, three, three, three}, 19);
+}
+
+/// A letter that draws and has a rule of its own, beside one that does not.
+void add_mixed_systems(GrowthTable& table) {
+    const std::vector<Counts> drawn = rows(2, {8, 2}, 9), hidden = rows(2, {6, 5}, 9);
+    table.try_rows({.letters = 2, .drawn = 1, .axiom_letter = 1}, {drawn, hidden}, 17);
+}
+
+} // namespace
+
+std::size_t Growth::drawn_in(std::size_t rule) const {
+    if (rule == letters) return axiom_letter < drawn ? axiom : 0;
+    return std::accumulate(rules[rule].begin(), rules[rule].begin() + static_cast<std::ptrdiff_t>(drawn),
+                           std::size_t{0});
+}
+
+std::size_t Growth::hidden_in(std::size_t rule) const {
+    if (rule == letters) return axiom_letter < drawn ? 0 : axiom;
+    return std::accumulate(rules[rule].begin() + static_cast<std::ptrdiff_t>(drawn), rules[rule].end(),
+                           std::size_t{0});
+}
+
+std::size_t Growth::size() const {
+    std::size_t sum = axiom;
+    for (std::size_t rule = 0; rule < letters; ++rule)
+        sum += drawn_in(rule) + hidden_in(rule);
+    return sum;
+}
+
+std::vector<Growth> growths(std::uint64_t segments, bool rich, bool sized, WorkMeter& meter) {
+    GrowthTable table(segments, meter);
+    if (rich && !sized) add_three_edges(table);
+    if (!rich && !sized) add_edge_systems(table);
+    if (!rich && !sized) add_mixed_systems(table);
+    for (std::uint8_t straight = 1; straight <= (sized ? 1 : 3); ++straight)
+        if (rich)
+            add_three_nodes(table, straight);
+        else
+            add_node_systems(table, straight);
+    return table.sorted();
+}
+
+} // namespace graftal

@@ -1,0 +1,461 @@
+#include "runtime/inverse/lsystem/stroke_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "compiler/support/number.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::int32_t most_directions = 360;
+constexpr std::size_t most_length_classes = 40;
+constexpr int most_turn_units = 24;
+constexpr double least_angle_deg = 1;
+
+double stroke_length(const Stroke& stroke) {
+    return std::hypot(stroke.to.x - stroke.from.x, stroke.to.y - stroke.from.y);
+}
+
+double direction_deg(const Stroke& stroke) {
+    return std::atan2(stroke.to.y - stroke.from.y, stroke.to.x - stroke.from.x) * 180 / std::numbers::pi;
+}
+
+/// An angle in (-180, 180].
+double wrapped_deg(double angle) {
+    angle = std::fmod(angle, 360);
+    return angle > 180 ? angle - 360 : angle <= -180 ? angle + 360 : angle;
+}
+
+/// Means of groups of sorted values that follow each other by at most `apart`, with their numbers.
+std::vector<std::pair<double, std::uint64_t>> value_groups(std::vector<double> values, double apart) {
+    std::ranges::sort(values);
+    std::vector<std::pair<double, std::uint64_t>> groups;
+    double last = 0;
+    for (const double value : values) {
+        if (groups.empty() || value - last > apart) groups.emplace_back(0, 0);
+        groups.back().first += value;
+        ++groups.back().second;
+        last = value;
+    }
+    for (auto& [sum, count] : groups)
+        sum /= static_cast<double>(count);
+    return groups;
+}
+
+/// An angle by whose multiples all directions differ.
+struct AngleGrid {
+    double angle_deg = 90;
+    std::int32_t directions = 4; ///< in a full circle, or 0
+
+    /// The multiple that is nearest to a difference of directions.
+    std::int32_t units(double deg) const {
+        if (directions > 0) {
+            const auto whole = static_cast<std::int32_t>(std::llround(wrapped_deg(deg) * directions / 360));
+            return 2 * whole <= -directions ? whole + directions : whole;
+        }
+        std::int32_t best = 0;
+        for (std::int32_t k = 1; k <= most_turn_units; ++k)
+            for (const std::int32_t signed_k : {k, -k})
+                if (error_at(deg, signed_k) < error_at(deg, best)) best = signed_k;
+        return best;
+    }
+    double error(double deg) const { return error_at(deg, units(deg)); }
+
+  private:
+    double error_at(double deg, std::int32_t k) const { return std::abs(wrapped_deg(deg - k * angle_deg)); }
+};
+
+} // namespace
+
+/// Makes the graph of one reading.
+class StrokeGraphBuilder {
+  public:
+    StrokeGraphBuilder(const Strokes& strokes, double reach) : strokes_(strokes), reach_(reach) {}
+
+    /// False, with the problem, if there is no angle.
+    bool build(StrokeGraph& graph, const std::vector<std::uint8_t>& classes, double noise_deg,
+               std::string& problem) {
+        graph.strokes = strokes_.size();
+        find_places(graph);
+        graph.first_deg = direction_deg(strokes_.front());
+        for (const Stroke& stroke : strokes_)
+            degrees_.push_back(wrapped_deg(direction_deg(stroke) - graph.first_deg));
+        AngleGrid grid;
+        if (!find_angle(graph, noise_deg, grid)) {
+            problem = "no angle has all its directions as multiples";
+            return false;
+        }
+        graph.angle_deg = grid.angle_deg;
+        graph.directions = grid.directions;
+        link(graph, classes, grid);
+        find_starts(graph);
+        if (graph.starts.empty()) problem = "its lines do not all hang together";
+        return !graph.starts.empty();
+    }
+
+  private:
+    void find_places(StrokeGraph& graph) {
+        for (const Stroke& stroke : strokes_) {
+            ends_.push_back(place_of(graph, stroke.from));
+            ends_.push_back(place_of(graph, stroke.to));
+        }
+    }
+
+    static std::uint64_t cell_key(std::int64_t x, std::int64_t y) {
+        return static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15ull ^
+               static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4Full;
+    }
+
+    std::uint32_t place_of(StrokeGraph& graph, Vec2 point) {
+        const auto x = static_cast<std::int64_t>(std::floor(point.x / (2 * reach_))),
+                   y = static_cast<std::int64_t>(std::floor(point.y / (2 * reach_)));
+        for (std::int64_t v = y - 1; v <= y + 1; ++v)
+            for (std::int64_t u = x - 1; u <= x + 1; ++u) {
+                const auto [from, to] = cells_.equal_range(cell_key(u, v));
+                for (auto at = from; at != to; ++at) {
+                    const Vec2 other = graph.places[at->second];
+                    if (std::hypot(other.x - point.x, other.y - point.y) <= reach_) return at->second;
+                }
+            }
+        const auto number = static_cast<std::uint32_t>(graph.places.size());
+        graph.places.push_back(point);
+        cells_.emplace(cell_key(x, y), number);
+        return number;
+    }
+
+    /// Turns between strokes of which one begins where the other ends, by size; at most so many a place.
+    std::vector<double> joint_turns(const StrokeGraph& graph) const {
+        constexpr std::size_t most_at_a_place = 6;
+        std::vector<std::vector<std::uint32_t>> leaving(graph.places.size());
+        for (std::uint32_t i = 0; i < strokes_.size(); ++i)
+            if (leaving[ends_[2 * i]].size() < most_at_a_place) leaving[ends_[2 * i]].push_back(i);
+        std::vector<double> turns;
+        for (std::uint32_t i = 0; i < strokes_.size(); ++i)
+            for (const std::uint32_t next : leaving[ends_[2 * i + 1]])
+                turns.push_back(std::abs(wrapped_deg(degrees_[next] - degrees_[i])));
+        return turns;
+    }
+
+    /// The angle of which the turns are the smallest multiples.
+    bool find_angle(const StrokeGraph& graph, double noise_deg, AngleGrid& best) {
+        const std::vector<double> found = distinct_degrees();
+        std::vector<double> joints = joint_turns(graph);
+        std::erase_if(joints, [&](double turn) { return turn < 0.5 * least_angle_deg; });
+        if (joints.empty()) // all in line, or no strokes meet
+            for (const double direction : found)
+                if (std::abs(direction) >= least_angle_deg) joints.push_back(std::abs(direction));
+        const auto turns = value_groups(joints, noise_deg);
+        double least = HUGE_VAL;
+        for (const double angle : angle_candidates(turns, std::max(least_angle_deg, 5 * noise_deg)))
+            for (const bool closed : {true, false}) {
+                AngleGrid grid{angle, 0};
+                const double circle = 360 / angle, whole = std::round(circle);
+                if (std::abs(circle - whole) < 0.12 && whole <= most_directions)
+                    grid.directions = static_cast<std::int32_t>(whole);
+                if (closed != (grid.directions > 0)) continue;
+                const double allowed = closed ? std::max(noise_deg, 0.1 * angle) : noise_deg;
+                const bool fits = std::ranges::all_of(
+                    found, [&](double direction) { return grid.error(direction) <= allowed; });
+                if (!fits) continue;
+                double cost = 0;
+                std::uint64_t count = 0;
+                for (const auto& [turn, number] : turns) {
+                    const double units = std::round(turn / angle);
+                    const bool direct = std::abs(turn - units * angle) <= allowed;
+                    cost += static_cast<double>(number) * (direct ? units : 10); // 10: by going round
+                    count += number;
+                }
+                cost /= static_cast<double>(std::max<std::uint64_t>(count, 1));
+                if (cost < least - 1e-9) {
+                    least = cost;
+                    best = grid;
+                    best.angle_deg = refined(joints, grid);
+                }
+            }
+        if (least < HUGE_VAL) return true;
+        for (const auto& turn : turns)
+            if (follow_turns(graph, refined(joints, {turn.first, 0}))) {
+                best = {refined(joints, {turn.first, 0}), 0};
+                return true;
+            }
+        return false;
+    }
+
+    /// Finds directions that go round many times, from stroke to stroke; false if they are no multiples.
+    bool follow_turns(const StrokeGraph& graph, double angle_deg) {
+        constexpr double most_error_deg = 0.02;
+        std::vector<std::vector<std::uint32_t>> leaving(graph.places.size());
+        for (std::uint32_t i = 0; i < strokes_.size(); ++i)
+            leaving[ends_[2 * i]].push_back(i);
+        std::vector<bool> seen(strokes_.size());
+        followed_.assign(strokes_.size(), 0);
+        const auto next_to = [&](std::uint32_t at, const auto& next) {
+            for (const std::uint32_t place : {ends_[2 * at], ends_[2 * at + 1]})
+                for (const std::uint32_t other : leaving[place]) {
+                    const double turn = wrapped_deg(degrees_[other] - degrees_[at]);
+                    const auto units = static_cast<std::int32_t>(std::lround(turn / angle_deg));
+                    if (seen[other] || std::abs(turn - units * angle_deg) > most_error_deg) continue;
+                    followed_[other] = followed_[at] + units;
+                    next(other);
+                }
+        };
+        if (visit_from(0, seen, next_to) == strokes_.size()) return true;
+        followed_.clear();
+        return false;
+    }
+
+    /// Directions, to a twentieth of a degree.
+    std::vector<double> distinct_degrees() const {
+        std::vector<double> distinct;
+        for (const double degrees : degrees_)
+            distinct.push_back(std::round(degrees * 20) / 20);
+        std::ranges::sort(distinct);
+        distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+        return distinct;
+    }
+
+    static std::vector<double> angle_candidates(const std::vector<std::pair<double, std::uint64_t>>& turns,
+                                                double least_deg) {
+        std::vector<double> candidates = {90};
+        for (const auto& turn : turns) {
+            for (const double part : {1.0, 2.0, 3.0, 4.0})
+                candidates.push_back(turn.first / part);
+            for (const auto& other : turns)
+                candidates.push_back(std::abs(turn.first - other.first));
+        }
+        std::erase_if(candidates, [&](double angle) { return angle < least_deg; });
+        std::ranges::sort(candidates);
+        const auto same = [](double a, double b) { return std::abs(a - b) < 1e-6; };
+        candidates.erase(std::unique(candidates.begin(), candidates.end(), same), candidates.end());
+        if (candidates.size() > 400) candidates.resize(400);
+        return candidates;
+    }
+
+    /// The angle by the mean of all turns, with as few digits as they tell.
+    static double refined(const std::vector<double>& turns, const AngleGrid& grid) {
+        double sum = 0, weight = 0, squares = 0;
+        for (const double turn : turns) {
+            const double units = std::round(turn / grid.angle_deg);
+            if (std::abs(turn - units * grid.angle_deg) > 0.1 * grid.angle_deg) continue;
+            sum += turn * units;
+            weight += units * units;
+        }
+        if (weight == 0) return grid.angle_deg;
+        const double mean = sum / weight;
+        for (const double turn : turns)
+            squares += std::pow(std::remainder(turn, mean), 2);
+        const double doubt = std::max(1e-7, 3 * std::sqrt(squares) / static_cast<double>(turns.size()));
+        for (int digits = 1; digits < 12; ++digits) {
+            std::string text;
+            append_number(text, mean, digits);
+            const double rounded = parse_number(text).value_or(mean);
+            if (std::abs(rounded - mean) < doubt) return rounded;
+            if (digits >= 3 && grid.directions > 0 && std::abs(360.0 / grid.directions - mean) < doubt)
+                return 360.0 / grid.directions;
+        }
+        return mean;
+    }
+
+    void link(StrokeGraph& graph, const std::vector<std::uint8_t>& classes, const AngleGrid& grid) {
+        struct Link {
+            std::uint32_t from, to;
+            std::int32_t direction;
+            std::uint8_t length;
+            auto operator<=>(const Link&) const = default;
+        };
+        std::vector<Link> links;
+        for (std::uint32_t i = 0; i < strokes_.size(); ++i) {
+            const std::int32_t direction = followed_.empty() ? grid.units(degrees_[i]) : followed_[i];
+            links.push_back({ends_[2 * i], ends_[2 * i + 1], direction, classes[i]});
+        }
+        turn_by_mean(graph, links);
+        std::ranges::sort(links, {}, [](const Link& link) {
+            return std::tuple(link.from, link.direction, link.to, link.length);
+        });
+        graph.first_way_.assign(graph.places.size() + 1, 0);
+        for (std::size_t i = 0; i < links.size(); ++i) {
+            if (i > 0 && links[i] == links[i - 1]) {
+                ++graph.copies.back();
+                continue;
+            }
+            graph.ways_.push_back(
+                {links[i].to, links[i].direction, static_cast<std::uint32_t>(graph.copies.size())});
+            graph.copies.push_back(1);
+            graph.classes.push_back(links[i].length);
+            ++graph.first_way_[links[i].from + 1];
+        }
+        std::partial_sum(graph.first_way_.begin(), graph.first_way_.end(), graph.first_way_.begin());
+    }
+
+    /// Takes for direction 0 the mean of what all strokes say of it.
+    template<typename Links> void turn_by_mean(StrokeGraph& graph, const Links& links) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < links.size(); ++i)
+            sum += wrapped_deg(degrees_[i] - links[i].direction * graph.angle_deg);
+        graph.first_deg += sum / static_cast<double>(links.size());
+    }
+
+    /// A place from which ways lead to every other, if there is one: the last that a search begins at.
+    static std::uint32_t mother_place(const StrokeGraph& graph) {
+        std::vector<bool> seen(graph.places.size());
+        std::uint32_t mother = 0;
+        for (std::uint32_t place = 0; place < seen.size(); ++place)
+            if (!seen[place]) {
+                mother = place;
+                visit_from(place, seen, [&](std::uint32_t at, const auto& next) {
+                    for (const StrokeWay& way : graph.ways(at))
+                        next(way.to);
+                });
+            }
+        return mother;
+    }
+
+    template<typename Neighbours>
+    static std::size_t visit_from(std::uint32_t place, std::vector<bool>& seen,
+                                  const Neighbours& neighbours) {
+        std::vector<std::uint32_t> waiting = {place};
+        seen[place] = true;
+        std::size_t count = 0;
+        while (!waiting.empty()) {
+            const std::uint32_t at = waiting.back();
+            waiting.pop_back();
+            ++count;
+            neighbours(at, [&](std::uint32_t next) {
+                if (seen[next]) return;
+                seen[next] = true;
+                waiting.push_back(next);
+            });
+        }
+        return count;
+    }
+
+    /// The places that lead to all others; of a drawing in one sweep, the one where more strokes begin than
+    /// end.
+    void find_starts(StrokeGraph& graph) const {
+        std::vector<std::int64_t> surplus(graph.places.size());
+        std::vector<std::vector<std::uint32_t>> before(graph.places.size());
+        for (std::size_t i = 0; i < strokes_.size(); ++i) {
+            ++surplus[ends_[2 * i]];
+            --surplus[ends_[2 * i + 1]];
+            before[ends_[2 * i + 1]].push_back(ends_[2 * i]);
+        }
+        std::int64_t sum = 0;
+        for (const std::int64_t each : surplus)
+            sum += std::max<std::int64_t>(0, each);
+        graph.branches = sum > 1;
+        const std::uint32_t mother = mother_place(graph);
+        std::vector<bool> reached(graph.places.size()), leads(graph.places.size());
+        const std::size_t count = visit_from(mother, reached, [&](std::uint32_t at, const auto& next) {
+            for (const StrokeWay& way : graph.ways(at))
+                next(way.to);
+        });
+        if (count < graph.places.size()) return;
+        visit_from(mother, leads,
+                   [&](std::uint32_t at, const auto& next) { std::ranges::for_each(before[at], next); });
+        for (std::uint32_t place = 0; place < leads.size(); ++place)
+            if (leads[place] && (graph.branches || sum == 0 || surplus[place] > 0))
+                graph.starts.push_back(place);
+        std::ranges::stable_sort(graph.starts, [&](std::uint32_t a, std::uint32_t b) {
+            return std::pair(a != ends_.front(), -surplus[a]) < std::pair(b != ends_.front(), -surplus[b]);
+        });
+    }
+
+    const Strokes& strokes_;
+    double reach_;
+    std::unordered_multimap<std::uint64_t, std::uint32_t> cells_; ///< places, by cells of a grid
+    std::vector<std::uint32_t> ends_;                             ///< places, two a stroke
+    std::vector<double> degrees_;                                 ///< of strokes, from the first
+    std::vector<std::int32_t> followed_; ///< directions of strokes, where they are found one from another
+};
+
+namespace {
+
+/// Cuts strokes whose lengths are whole multiples of the shortest; false if some length is none.
+bool cut_into_units(const Strokes& strokes, double unit, double tolerance, Strokes& cut) {
+    for (const Stroke& stroke : strokes) {
+        const double length = stroke_length(stroke) / unit, whole = std::round(length);
+        if (std::abs(length - whole) > 2 * tolerance || cut.size() > 2'000'000) return false;
+        const Vec2 step = (stroke.to - stroke.from) / whole;
+        for (double i = 0; i < whole; ++i)
+            cut.push_back({stroke.from + i * step, stroke.from + (i + 1) * step});
+    }
+    return true;
+}
+
+/// The class of each stroke, where lengths are powers of one factor; else nothing.
+std::vector<std::uint8_t> power_classes(const Strokes& strokes, double longest, double factor,
+                                        double tolerance) {
+    std::vector<std::uint8_t> classes;
+    for (const Stroke& stroke : strokes) {
+        const double power = std::round(std::log(stroke_length(stroke) / longest) / std::log(factor));
+        const double expected = longest * std::pow(factor, power);
+        if (!(power >= 0 && power < most_length_classes) ||
+            std::abs(stroke_length(stroke) - expected) > 3 * tolerance * longest)
+            return {};
+        classes.push_back(static_cast<std::uint8_t>(power));
+    }
+    return classes;
+}
+
+} // namespace
+
+std::vector<StrokeGraph> stroke_graphs(const Strokes& all, double tolerance, std::string& problem) {
+    Vec2 low(HUGE_VAL), high(-HUGE_VAL);
+    for (const Stroke& stroke : all)
+        for (const Vec2 end : {stroke.from, stroke.to}) {
+            low = {std::min(low.x, end.x), std::min(low.y, end.y)};
+            high = {std::max(high.x, end.x), std::max(high.y, end.y)};
+        }
+    const double extent = std::max(high.x - low.x, high.y - low.y);
+    Strokes strokes;
+    std::vector<double> lengths;
+    for (const Stroke& stroke : all)
+        if (const double length = stroke_length(stroke); length > 1e-9 * extent) {
+            strokes.push_back(stroke);
+            lengths.push_back(length);
+        }
+    if (strokes.size() < 4 || !(extent < 1e100)) {
+        problem = extent < 1e100 || strokes.empty()
+                      ? fmt::format("it has only {} line{}, too few to tell rules by", strokes.size(),
+                                    strokes.size() == 1 ? "" : "s")
+                      : "its coordinates are too large";
+        return {};
+    }
+    const double shortest_length = *std::ranges::min_element(lengths);
+    const auto groups = value_groups(lengths, tolerance * shortest_length);
+    if (groups.size() > most_length_classes) {
+        problem = "its lines have too many different lengths";
+        return {};
+    }
+    const double noise_deg = std::min(4.0, std::max(2e-4, 1.2 * tolerance) * 180 / std::numbers::pi);
+    std::vector<StrokeGraph> graphs;
+    const auto add = [&](const Strokes& read, const std::vector<std::uint8_t>& classes, double unit,
+                         double factor) {
+        StrokeGraph graph;
+        graph.unit = unit;
+        graph.factor = factor;
+        if (StrokeGraphBuilder(read, tolerance * shortest_length).build(graph, classes, noise_deg, problem))
+            graphs.push_back(std::move(graph));
+    };
+    const double unit = groups.front().first, longest = groups.back().first;
+    Strokes cut;
+    if (cut_into_units(strokes, unit, tolerance, cut))
+        add(cut, std::vector<std::uint8_t>(cut.size()), unit, 1);
+    if (groups.size() > 1) {
+        const double factor = groups[groups.size() - 2].first / longest;
+        const std::vector<std::uint8_t> classes = power_classes(strokes, longest, factor, tolerance);
+        if (!classes.empty()) add(strokes, classes, longest, factor);
+    }
+    if (graphs.empty() && problem.empty())
+        problem = "the lengths of its lines are neither multiples of one nor powers of one factor";
+    return graphs;
+}
+
+} // namespace graftal

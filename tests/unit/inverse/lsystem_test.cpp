@@ -1,0 +1,253 @@
+#include "runtime/inverse/lsystem/found_lsystem.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runtime/inverse/lsystem/drawing_file.h"
+#include "runtime/system/file.h"
+#include "runtime/system/temporary_directory.h"
+
+namespace graftal {
+namespace {
+
+using ::testing::HasSubstr;
+
+class FoundLsystemTest : public ::testing::Test {
+  protected:
+    void SetUp() override { ASSERT_TRUE(directory_.create().ok()); }
+
+    std::string path(const std::string& name) const { return directory_.path() + "/" + name; }
+
+    /// What an L-system draws.
+    static Strokes drawing(const std::string& text, std::optional<unsigned> steps = std::nullopt) {
+        Session session("m.lsys", text);
+        StageOptions options;
+        options.lower.steps = steps;
+        Compilation compilation;
+        std::optional<Strokes> strokes = model_strokes(session, options, compilation);
+        EXPECT_TRUE(strokes) << compilation.diagnostics.render(compilation.sources) << text;
+        return strokes.value_or(Strokes());
+    }
+
+    /// A list of lines in another order, turned and scaled; each coordinate is off by up to `noise`.
+    std::string listed(Strokes strokes, double noise = 0) const {
+        std::uint64_t state = 1;
+        const auto random = [&] {
+            return state = state * 6364136223846793005ull + 1442695040888963407ull, state >> 33;
+        };
+        for (std::size_t i = strokes.size(); i > 1; --i)
+            std::swap(strokes[i - 1], strokes[random() % i]);
+        std::string text = "x1,y1,x2,y2\n";
+        const auto moved = [&](Vec2 p) {
+            const auto off = [&] { return noise * (static_cast<double>(random() % 2001) / 1000 - 1); };
+            return fmt::format("{},{}", 3 * (p.x * 0.8 - p.y * 0.6 + off()) + 7,
+                               3 * (p.x * 0.6 + p.y * 0.8 + off()));
+        };
+        for (const Stroke& stroke : strokes)
+            text += moved(stroke.from) + "," + moved(stroke.to) + "\n";
+        return text;
+    }
+
+    std::optional<FoundLsystem> find(const std::string& name, const std::string& text, double seconds = 20,
+                                     const CancelFlag& cancel = {}) {
+        EXPECT_TRUE(write_text(path(name), text).ok());
+        options_.drawing = path(name);
+        options_.seconds = seconds;
+        Compilation compilation;
+        auto found = find_lsystem(options_, cancel, compilation);
+        message_ = compilation.diagnostics.render(compilation.sources) + compilation.status.message();
+        return found;
+    }
+
+    TemporaryDirectory directory_;
+    FindLsystemOptions options_;
+    std::string message_;
+};
+
+/// Numbers of a drawing that no turn or shift changes: strokes, and squares of their distances from the
+/// middle.
+std::pair<std::size_t, double> measure(const Strokes& strokes) {
+    Vec2 middle(0.0);
+    for (const Stroke& stroke : strokes)
+        middle += (stroke.from + stroke.to) / (2.0 * static_cast<double>(strokes.size()));
+    double sum = 0;
+    for (const Stroke& stroke : strokes)
+        sum += std::pow(std::hypot(stroke.from.x - middle.x, stroke.from.y - middle.y), 2) +
+               3 * std::pow(std::hypot(stroke.to.x - middle.x, stroke.to.y - middle.y), 2);
+    return {strokes.size(), sum};
+}
+
+TEST_F(FoundLsystemTest, ClassicsAreFoundFromShuffledLines) {
+    const struct {
+        const char* name;
+        std::string body;
+        std::size_t letters;
+        unsigned steps;
+    } cases[] = {
+        {"Koch curve", "angle 60\nsteps 4\naxiom F\nF -> F+F--F+F", 3, 8}, // by a root of its rule
+        {"dragon", "angle 90\nsteps 8\naxiom A\nA -> A+B+\nB -> -A-B\ninterpret A -> F\ninterpret B -> F", 5,
+         8},
+        {"weed", "angle 25.7\nsteps 4\naxiom F\nF -> F[+F]F[-F]F", 6, 4},
+        {"bush by nodes", "angle 22.5\nsteps 4\naxiom X\nX -> F-[[X]+X]+F[+FX]-X\nF -> FF", 10, 4},
+        {"Hilbert's curve", "angle 90\nsteps 4\naxiom L\nL -> +RF-LFL-FR+\nR -> -LF+RFR+FL-", 15, 4},
+    };
+    for (const auto& [name, body, letters, steps] : cases) {
+        SCOPED_TRACE(name);
+        const std::string truth = "lsys m {\n" + body + "\n}\n";
+        const auto found = find("d.csv", listed(drawing(truth)));
+        ASSERT_TRUE(found) << message_;
+        EXPECT_EQ(found->redrawn, found->strokes);
+        EXPECT_LT(found->farthest, 1e-6);
+        EXPECT_LE(found->letters, letters) << found->text;
+        EXPECT_EQ(found->steps, steps) << found->text;
+        const unsigned deeper = steps == 8 && letters == 3 ? 10 : steps + 1;
+        const auto expected = measure(drawing(truth, steps == 8 && letters == 3 ? 5 : steps + 1)),
+                   got = measure(drawing(found->text, deeper));
+        EXPECT_EQ(got.first, expected.first) << found->text;
+        EXPECT_NEAR(got.second, expected.second, 1e-6 * expected.second) << found->text;
+    }
+}
+
+TEST_F(FoundLsystemTest, LengthsMayShrinkFromStepToStep) {
+    const auto found = find("d.csv", listed(drawing("lsys m {\nangle 30\nsteps 6\naxiom A(1)\n"
+                                                    "A(s) -> F(s)[+A(s*0.7)][-A(s*0.7)]\n}\n")));
+    ASSERT_TRUE(found) << message_;
+    EXPECT_EQ(found->redrawn, 63);
+    EXPECT_NEAR(found->factor, 0.7, 1e-9);
+    EXPECT_EQ(found->steps, 6);
+    EXPECT_THAT(found->text, HasSubstr("X(s) -> F(s)["));
+    EXPECT_THAT(found->text, HasSubstr("X(s*0.7)"));
+}
+
+TEST_F(FoundLsystemTest, ATurnedDrawingComesBackTurned) {
+    const auto found =
+        find("d.csv", listed(drawing("lsys m {\nangle 90\nsteps 4\naxiom F\nF -> F+F-F-F+F\n}\n")));
+    ASSERT_TRUE(found) << message_;
+    EXPECT_THAT(found->text, HasSubstr("axiom +(36.8698976)F")) << "3, 4 and 5";
+}
+
+TEST_F(FoundLsystemTest, ToleranceAllowsForNoise) {
+    const Strokes drawn = drawing("lsys m {\nangle 60\nsteps 4\naxiom F\nF -> F+F--F+F\n}\n");
+    EXPECT_FALSE(find("d.csv", listed(drawn, 0.02), 2));
+    options_.tolerance = 0.1;
+    const auto found = find("d.csv", listed(drawn, 0.02), 2);
+    ASSERT_TRUE(found) << message_;
+    EXPECT_EQ(found->redrawn, found->strokes);
+    EXPECT_EQ(found->angle_deg, 60);
+}
+
+TEST_F(FoundLsystemTest, SvgsAreRead) {
+    const std::string head = "<svg xmlns='http://www.w3.org/2000/svg'>";
+    const std::string ways[] = {
+        "<path d='M0 0h1v1H2V0l1-.0e0z'/>",
+        "<line x1='0' y1='0' x2='1' y2='0'/><polyline points='1,0 1,1 2 1 2,0,3,0 0 0'/>",
+        "<defs><path id='a' d='M0,0 1,0'/></defs><g transform='translate(1) scale(2)'>"
+        "<use href='#a' transform='matrix(.5 0 0 .5 -.5 0)'/></g>"
+        "<path d='M 1 0 m 0,0 L1 1 l 1,0 0,-1 L3 0'/><polygon points='3 0 0 0'/>"};
+    for (const std::string& way : ways) {
+        std::string problem;
+        const auto strokes = svg_strokes(head + way + "</svg>", problem);
+        ASSERT_TRUE(strokes) << problem << way;
+        ASSERT_EQ(strokes->size(), 6) << way;
+        EXPECT_NEAR((*strokes)[0].from.x, 0, 1e-12);
+        EXPECT_NEAR((*strokes)[0].to.x, 1, 1e-12);
+        EXPECT_EQ((*strokes)[1].to, Vec2(1, -1)) << "y points up";
+        EXPECT_EQ((*strokes)[4].to, Vec2(3, 0));
+    }
+}
+
+TEST_F(FoundLsystemTest, BrokenSvgsAreRefused) {
+    const struct {
+        std::string text, problem;
+    } cases[] = {
+        {"", "XML is broken"},
+        {"<svg><g></svg>", "XML is broken"},
+        {"<html/>", "no element 'svg'"},
+        {"<svg><path d='M0 0 C1 1 2 2 3 3'/></svg>", "'C' is no straight line"},
+        {"<svg><path d='M0'/></svg>", "a number is missing"},
+        {"<svg><path d='L'/></svg>", "a number is missing"},
+        {"<svg><path d='1 2'/></svg>", "begins without a command"},
+        {"<svg><polyline points='1 2 3'/></svg>", "odd number"},
+        {"<svg><polyline points='1 2 nan 4'/></svg>", "is broken"},
+        {"<svg><g transform='turn(3)'/></svg>", "transform 'turn(3)' is broken"},
+        {"<svg><use href='#a'/></svg>", "which is not there"},
+        {"<svg><g id='a'><use href='#a'/></g></svg>", "too deep"},
+    };
+    for (const auto& [text, problem] : cases) {
+        std::string said;
+        EXPECT_FALSE(svg_strokes(text, said)) << text;
+        EXPECT_THAT(said, HasSubstr(problem)) << text;
+    }
+    std::string bomb = "<svg><defs><line id='a0' x2='1'/>";
+    for (int i = 0; i < 40; ++i)
+        bomb += fmt::format("<g id='a{1}'><use href='#a{0}'/><use href='#a{0}'/></g>", i, i + 1);
+    std::string said;
+    EXPECT_FALSE(svg_strokes(bomb + "</defs><use href='#a40'/></svg>", said));
+    EXPECT_THAT(said, HasSubstr("it has more than"));
+}
+
+TEST_F(FoundLsystemTest, HostileDrawingsAreRefused) {
+    const struct {
+        std::string text, problem;
+    } cases[] = {
+        {"", "only 0 lines"},
+        {"0 0 1 1\n", "only 1 line"},
+        {"0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 0\n", "only 0 lines"},
+        {"x\n0 0 nan 1\n", "line 2 has no four numbers"},
+        {"0 0 1 1\n1 2 3\n", "line 2 has no four numbers"},
+        {"0 0 1e300 1\n0 0 1 1\n0 0 2 1\n0 0 3 1\n1e300 4 -1e300 2\n", "is no L-system's"},
+        {"0 0 1 0\n5 5 6 5\n9 9 9 10\n3 3 4 3\n", "do not all hang together"},
+        {"0 0 1 0\n1 0 1 1.37\n1 1.37 3 1\n3 1 2 8\n2 8 3 9\n", "is no L-system's"},
+    };
+    for (const auto& [text, problem] : cases) {
+        EXPECT_FALSE(find("d.txt", text, 1)) << text;
+        EXPECT_THAT(message_, HasSubstr(problem)) << text;
+    }
+    std::string copies, noise;
+    for (int i = 0; i < 1000; ++i)
+        copies += "0 0 1 0\n";
+    if (const auto found = find("d.txt", copies, 1)) {
+        EXPECT_EQ(found->redrawn, 1000) << "branches that lie on each other";
+    }
+    std::uint64_t state = 1;
+    const auto random = [&] {
+        return state = state * 6364136223846793005ull + 1442695040888963407ull, (state >> 33) % 100;
+    };
+    for (int i = 0; i < 100'000; ++i)
+        noise += fmt::format("{} {} {} {}\n", random(), random(), random(), random());
+    EXPECT_FALSE(find("d.txt", noise, 1));
+    EXPECT_THAT(message_, HasSubstr("is no L-system's"));
+    std::string steps; // a random walk on a grid has an angle, and no rules
+    for (int i = 0, x = 0, y = 0; i < 100'000; ++i) {
+        const int dx = random() % 2 ? 0 : random() % 2 ? 1 : -1, dy = dx ? 0 : random() % 2 ? 1 : -1;
+        steps += fmt::format("{} {} {} {}\n", x, y, x + dx, y + dy);
+        x += dx, y += dy;
+    }
+    EXPECT_FALSE(find("d.txt", steps, 1));
+    EXPECT_THAT(message_, HasSubstr("no L-system"));
+}
+
+TEST_F(FoundLsystemTest, ModelsInSpaceAreRefused) {
+    EXPECT_FALSE(find("m.lsys", "lsys m {\naxiom F&F\nF -> F^F\nsteps 3\n}\n"));
+    EXPECT_THAT(message_, HasSubstr("draws in space"));
+}
+
+TEST_F(FoundLsystemTest, AnInterruptionEndsIt) {
+    EXPECT_FALSE(find("m.lsys", "lsys m {\nangle 60\nsteps 4\naxiom F\nF -> F+F--F+F\n}\n", 20,
+                      CancelFlag([] { return true; })));
+    EXPECT_THAT(message_, HasSubstr("interrupted"));
+}
+
+TEST_F(FoundLsystemTest, TheBytesAreAlwaysTheSame) {
+    const std::string text = listed(drawing("lsys m {\nangle 36\nsteps 4\naxiom F\nF -> F+F[-F]F\n}\n"));
+    const auto one = find("d.csv", text), two = find("d.csv", text);
+    ASSERT_TRUE(one && two) << message_;
+    EXPECT_EQ(one->text, two->text);
+}
+
+} // namespace
+} // namespace graftal

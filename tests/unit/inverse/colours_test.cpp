@@ -11,7 +11,7 @@ constexpr int size = 160;
 const PlaneMaps tinted_gasket = {
     {0.5, 0, 0, 0.5, 0, 0}, {0.5, 0, 0, 0.5, 0.5, 0}, {0.5, 0, 0, 0.5, 0.25, 0.5}};
 
-/// The tinted_gasket by random iteration, each point in the colour of its address.
+/// The gasket by random iteration, each point in the colour of its address.
 struct Coloured {
     CellSet set{size, size};
     std::vector<Rgb> colours = std::vector<Rgb>(size * size, Rgb(0.0));

@@ -77,19 +77,31 @@ Rgb SkyLight::radiance(Vec3 direction) const {
     return (1 - t) * horizon + t * zenith;
 }
 
-Rgb SkyLight::on_paper() const {
-    if (picture) return brightness * picture->on_paper();
+/// The mean over the upper half, whose heights are those of the middles of equal shares of [0, 1].
+template<typename Height> Rgb SkyLight::mean_above(const Height& height_at) const {
     constexpr int rings = 64, parts = 64;
     const auto [x, z] = axes_across(up);
     Rgb sum(0.0);
     for (int i = 0; i < rings; ++i)
         for (int j = 0; j < parts; ++j) {
-            const double sine = std::sqrt((i + 0.5) / rings); // equal shares of the cosine-weighted sphere
+            const double height = height_at((i + 0.5) / rings), sine = std::sqrt(1 - height * height);
             const double turn = 2 * std::numbers::pi * (j + 0.5) / parts;
-            sum +=
-                radiance(std::sqrt(1 - sine * sine) * up + sine * (std::cos(turn) * x - std::sin(turn) * z));
+            sum += radiance(height * up + sine * (std::cos(turn) * x - std::sin(turn) * z));
         }
     return sum / static_cast<double>(rings * parts);
+}
+
+Rgb SkyLight::on_paper() const {
+    if (picture) return brightness * picture->on_paper();
+    return mean_above([](double share) { return std::sqrt(1 - share); }); // as a cosine weighs them
+}
+
+Rgb SkyLight::average() const {
+    if (!picture) return 0.5 * (below + mean_above([](double share) { return share; }));
+    Rgb sum(0.0);
+    for (const SkyCells::Cell& cell : picture->cells().cells)
+        sum += Rgb(cell.power);
+    return brightness / (4 * std::numbers::pi) * sum;
 }
 
 } // namespace graftal

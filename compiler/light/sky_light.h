@@ -55,6 +55,11 @@ struct SkyLight {
 
     /// The irradiance of a surface that faces up, over pi: the light that white paper shows.
     Rgb on_paper() const;
+    /// The mean over all directions.
+    Rgb average() const;
+
+  private:
+    template<typename Height> Rgb mean_above(const Height& height_at) const;
 };
 
 } // namespace graftal

@@ -1,34 +1,56 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/support/affine.h"
 
 namespace graftal {
 
-/// A module of a derived word, as a part of a plant: a letter of the model's own, or one that draws.
+/// The kind of thing that a module is drawn as.
+enum class Organ : std::uint8_t { none, segment, ball, disc, polygon, model };
+
+/// "segment"; "" of none.
+inline std::string_view name_of(Organ organ) {
+    constexpr std::string_view names[] = {"", "segment", "ball", "disc", "polygon", "model"};
+    return names[static_cast<std::size_t>(organ)];
+}
+
+/// A part of a plant: a module of a derived word that is a letter of the model's own or draws something, or
+/// something that is drawn in the place of one.
 struct PlantModule {
     static constexpr std::uint32_t none = UINT32_MAX;
+    static constexpr std::uint16_t no_name = UINT16_MAX;
 
     std::uint16_t name = 0; ///< among Plant::names
     std::vector<double> parameters;
-    std::uint32_t parent = none; ///< the module that bears it; none of the first
-    bool branches = false;       ///< it begins a branch of its parent; else it follows it on the same axis
-    std::uint32_t order = 0;     ///< of its axis: 0 of the main one, 1 of its branches
-    std::uint32_t rank = 0;      ///< place on its axis, from 0 on
-    Vec3 start{0.0}, end{0.0};   ///< where the turtle stands before and after it, in the model's units
-    Vec3 heading{0.0};           ///< unit vector, before it
-    double width = 0;            ///< diameter of segments after it; 0: the model leaves that to graftal
-    std::int64_t age = -1;       ///< steps since it came into being; -1: no rule of the model asks for ages
+    std::uint32_t parent = none;  ///< the module that bears it; none of the first
+    std::uint32_t part_of = none; ///< the module of the word in whose place it is drawn
+    bool branches = false;        ///< it begins a branch of its parent; else it follows it on the same axis
+    std::uint32_t order = 0;      ///< of its axis: 0 of the main one, 1 of its branches
+    std::uint32_t rank = 0;       ///< place on its axis, from 0 on
+    Vec3 start{0.0}, end{0.0};    ///< where the turtle stands before and after it, in the model's units
+    Vec3 heading{0.0}, left{0.0}, up{0.0}; ///< unit vectors, before it
+    Organ organ = Organ::none;
+    std::uint16_t material = no_name; ///< among Plant::materials
+    // Sums over its parts, where it has some:
+    double length = 0; ///< of segments
+    double area = 0;   ///< of the surface, ends of segments left out; of flat organs one side
+    double volume = 0;
+    bool is_measured = true; ///< or area and volume lack those of models
+    double width = 0;        ///< diameter of what it draws; of others, of segments after it
+    double age = -1;         ///< steps since it came into being; -1: not known
 };
 
 /// The structure of a plant: modules in the order of the word, so that parents come before what they bear.
 struct Plant {
     std::vector<std::string> names;
+    std::vector<std::string> materials;
     std::vector<PlantModule> modules;
-    unsigned steps = 0; ///< of the derivation
+    double steps = 0; ///< of the derivation
 };
 
 } // namespace graftal

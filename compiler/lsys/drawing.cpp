@@ -79,29 +79,11 @@ class Drawer {
     }
 
     std::optional<LsysDrawing> draw(Graph& graph, ObjectPool& pool) {
-        std::optional<std::vector<Material>> palette = palette_of(grammar_, graph, diagnostics_);
-        if (!palette) return std::nullopt;
-        palette_ = std::move(*palette);
+        if (!choose_palette(graph)) return std::nullopt;
         if (!options_.steps) return draw_limit(graph, pool);
         steps_ = *options_.steps;
         if (options_.exact) rewriter_.use_no_pool();
-        if (options_.exact || grammar_.needs_word) {
-            if (!derive()) return std::nullopt;
-        } else {
-            if (grammar_.is_stochastic) variants_ = fewest_of(grammar_);
-            const std::uint32_t fewest = variants_;
-            const std::size_t sixteens = std::max(1u, variants_ / fewest_variants);
-            const auto sized = [&](const Rounding& rounding) {
-                return sixteens * (rounding.resizes ? most_resized_parts : most_sized_parts);
-            };
-            const auto exact = [](const Rounding&) { return most_exact_parts; };
-            if (has_sizes() && !choose_rounding(graph, sized)) return std::nullopt;
-            // Variants that differ in their directions too would be too many to judge.
-            if (uses_directions() && !choose_rounding(graph, exact)) return std::nullopt;
-            if (!choose_variants(graph)) return std::nullopt;
-            if (uses_directions() && variants_ > fewest && !choose_rounding(graph, exact))
-                return std::nullopt;
-        }
+        if (!(options_.exact || grammar_.needs_word ? derive() : choose_parts(graph))) return std::nullopt;
         if (in_run_) return draw_run(graph);
         std::optional<LsysDrawing> drawing = compose(graph, pool);
         if (drawing || !gave_up_) return drawing;
@@ -109,7 +91,44 @@ class Drawer {
         return in_run_ ? draw_run(graph) : compose(graph, pool);
     }
 
+    bool tell(Graph& graph, ObjectPool& pool, WordWitness& witness) {
+        if (!choose_palette(graph)) return false;
+        steps_ = *options_.steps;
+        if (options_.exact) rewriter_.use_no_pool();
+        const bool by_chance = grammar_.is_stochastic;
+        if (!(options_.exact || grammar_.needs_word || !by_chance ? derive() : choose_parts(graph)))
+            return false;
+        if (in_run_ || !by_chance) return tell_run(graph, witness);
+        if (!choose_width(graph)) return false;
+        Composition composition(*this, graph, pool, draws_lines(grammar_), models_);
+        composition.bodies.tell(witness);
+        composition.composer.tell(witness);
+        return composition.variant(0).has_value();
+    }
+
   private:
+    bool choose_palette(Graph& graph) {
+        std::optional<std::vector<Material>> palette = palette_of(grammar_, graph, diagnostics_);
+        if (palette) palette_ = std::move(*palette);
+        return palette.has_value();
+    }
+
+    /// How parts are looked up, and how many variants there are of each; false after an error.
+    bool choose_parts(const Graph& graph) {
+        if (grammar_.is_stochastic) variants_ = fewest_of(grammar_);
+        const std::uint32_t fewest = variants_;
+        const std::size_t sixteens = std::max(1u, variants_ / fewest_variants);
+        const auto sized = [&](const Rounding& rounding) {
+            return sixteens * (rounding.resizes ? most_resized_parts : most_sized_parts);
+        };
+        const auto exact = [](const Rounding&) { return most_exact_parts; };
+        if (has_sizes() && !choose_rounding(graph, sized)) return false;
+        // Variants that differ in their directions too would be too many to judge.
+        if (uses_directions() && !choose_rounding(graph, exact)) return false;
+        if (!choose_variants(graph)) return false;
+        return !uses_directions() || variants_ == fewest || choose_rounding(graph, exact);
+    }
+
     /// One composer with all that it needs.
     struct Composition {
         Composition(Drawer& owner, Graph& graph, ObjectPool& pool, bool lines, ModelPlacer placer)
@@ -231,6 +250,31 @@ class Drawer {
         LsysDrawing drawing = drawing_of(part, "derived", 1);
         drawing.packed = bodies.take_packed();
         return drawing;
+    }
+
+    /// Module by module, once more where the width depends on the figure.
+    bool tell_run(Graph& graph, WordWitness& witness) {
+        if (width_is_open_) {
+            struct : WordWitness {
+                bool begins(const Module&, const Turtle&) override { return true; }
+            } deaf;
+            const std::optional<TurtlePart> figure = tell_turtle(graph, deaf);
+            if (!figure) return false;
+            set_width_for(*figure);
+        }
+        return tell_turtle(graph, witness).has_value();
+    }
+
+    std::optional<TurtlePart> tell_turtle(Graph& graph, WordWitness& witness) {
+        TurtleBodies bodies(graph, palette_);
+        bodies.tell(witness);
+        TurtleContext context = turtle_context(bodies, diagnostics_, draws_lines(grammar_));
+        context.tallies = width_is_open_;
+        Turtle turtle(context, start());
+        LsysStream stream(rewriter_, models_, diagnostics_, stream_options());
+        stream.tell(witness);
+        if (!(word_ ? stream.draw(*word_, turtle) : stream.derive(turtle))) return std::nullopt;
+        return std::move(turtle).finish();
     }
 
     LsysStream::Options stream_options() const {
@@ -501,6 +545,11 @@ std::optional<LsysDrawing> draw_lsys(const LsysGrammar& grammar, const ModelPlac
                                      const LsysDrawOptions& options, Graph& graph, ObjectPool& pool,
                                      Diagnostics& diagnostics) {
     return Drawer(grammar, models, options, diagnostics).draw(graph, pool);
+}
+
+bool tell_lsys(const LsysGrammar& grammar, const ModelPlacer& models, const LsysDrawOptions& options,
+               Graph& graph, ObjectPool& pool, Diagnostics& diagnostics, WordWitness& witness) {
+    return Drawer(grammar, models, options, diagnostics).tell(graph, pool, witness);
 }
 
 } // namespace graftal

@@ -10,6 +10,7 @@
 #include "compiler/lower/object_pool.h"
 #include "compiler/lsys/compile/grammar.h"
 #include "compiler/lsys/turtle/model_placer.h"
+#include "compiler/lsys/turtle/witness.h"
 #include "compiler/support/control.h"
 
 namespace graftal {
@@ -50,5 +51,10 @@ struct LsysDrawing {
 std::optional<LsysDrawing> draw_lsys(const LsysGrammar& grammar, const ModelPlacer& models,
                                      const LsysDrawOptions& options, Graph& graph, ObjectPool& pool,
                                      Diagnostics& diagnostics);
+
+/// Has a witness hear of the word that draw_lsys() draws, by the same choices of chance, and of its bodies,
+/// as thick as it draws them. False after an error. Requires steps. O(modules that are drawn).
+bool tell_lsys(const LsysGrammar& grammar, const ModelPlacer& models, const LsysDrawOptions& options,
+               Graph& graph, ObjectPool& pool, Diagnostics& diagnostics, WordWitness& witness);
 
 } // namespace graftal

@@ -14,10 +14,10 @@
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
+#include "compiler/lsys/as_drawn.h"
 #include "compiler/lsys/compile/grammar.h"
 #include "compiler/lsys/drawing.h"
 #include "compiler/lsys/turtle/model_placer.h"
-#include "compiler/lsys/walk/written_word.h"
 #include "compiler/support/counter_random.h"
 #include "compiler/syntax/everyday_words.h"
 
@@ -349,26 +349,35 @@ class LsysLowering {
         return lowering_.at_root_model() ? *asked : CounterRandom(*asked)(grammar.seed);
     }
 
+    LsysDrawOptions draw_options(const Block& block, const LsysGrammar& grammar,
+                                 const std::map<SymbolId, Model>& models, std::optional<unsigned> steps) {
+        const LowerOptions& options = lowering_.options;
+        return {.steps = steps,
+                .share = share_of_step(block, grammar),
+                .seed = seed_of(grammar),
+                .exact = options.exact,
+                .max_modules = options.max_modules,
+                .inner = inner_counts(models),
+                .has_other_models = has_other_models(models),
+                .max_parts = options.max_objects,
+                .run_from = options.run_from,
+                .meter = &lowering_.meter};
+    }
+
     std::optional<ObjectId> draw(const Block& block, const LsysGrammar& grammar,
                                  const std::map<SymbolId, Model>& models, std::optional<unsigned> steps) {
         const LsysBlock& source = *block.source;
-        const LowerOptions& options = lowering_.options;
-        if (options.in_place != LowerOptions::InPlace::nothing && is_root(block)) {
-            take_word(block, grammar, steps);
+        const LsysDrawOptions options = draw_options(block, grammar, models, steps);
+        if (lowering_.options.in_place != LowerOptions::InPlace::nothing && is_root(block)) {
+            LowerNotes& notes = lowering_.notes;
+            if (lowering_.options.in_place == LowerOptions::InPlace::word)
+                notes.word = word_as_drawn(grammar, placer(models), options, graph_, pool_, diagnostics_);
+            else
+                notes.plant = plant_as_drawn(grammar, placer(models), options, graph_, pool_, diagnostics_);
             return std::nullopt;
         }
-        std::optional<LsysDrawing> drawing = draw_lsys(grammar, placer(models),
-                                                       {.steps = steps,
-                                                        .share = share_of_step(block, grammar),
-                                                        .seed = seed_of(grammar),
-                                                        .exact = options.exact,
-                                                        .max_modules = options.max_modules,
-                                                        .inner = inner_counts(models),
-                                                        .has_other_models = has_other_models(models),
-                                                        .max_parts = options.max_objects,
-                                                        .run_from = options.run_from,
-                                                        .meter = &lowering_.meter},
-                                                       graph_, pool_, diagnostics_);
+        std::optional<LsysDrawing> drawing =
+            draw_lsys(grammar, placer(models), options, graph_, pool_, diagnostics_);
         if (!drawing) return std::nullopt;
         if (drawing->limited_by_work) lowering_.notes.limited_by_work = true;
         if (is_root(block)) {
@@ -383,29 +392,6 @@ class LsysLowering {
         }
         if (is_idle) warn_of_no_steps(source);
         return add_root(source, std::move(*drawing));
-    }
-
-    /// The word of the root model, or its modules, for the notes.
-    void take_word(const Block& block, const LsysGrammar& grammar, std::optional<unsigned> steps) {
-        constexpr std::uint64_t most_written = 5'000'000;
-        if (!steps) {
-            diagnostics_
-                .error(block.source->steps->span,
-                       fmt::format("'lsys {}' draws a limit, which has no word", block.source->name.text))
-                .with_hint("give '--steps N' for the word after so many steps");
-            return;
-        }
-        const std::uint64_t seed = seed_of(grammar),
-                            most = std::min(most_written, lowering_.options.max_modules);
-        LsysRewriter rewriter(grammar, diagnostics_, seed, &lowering_.meter);
-        if (lowering_.options.exact) rewriter.use_no_pool();
-        std::optional<ModuleString> word = derived_word(rewriter, *steps, seed, most, diagnostics_);
-        if (!word) return;
-        const DerivedWord derived{rewriter, std::move(*word), *steps};
-        if (lowering_.options.in_place == LowerOptions::InPlace::word)
-            lowering_.notes.word = written_word(derived);
-        else if (std::optional<Plant> plant = plant_of(derived, seed, diagnostics_))
-            lowering_.notes.plant = std::make_shared<const Plant>(std::move(*plant));
     }
 
     static std::map<SymbolId, std::size_t> inner_counts(const std::map<SymbolId, Model>& models) {

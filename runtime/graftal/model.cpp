@@ -17,6 +17,7 @@
 #include "compiler/session/stats.h"
 #include "compiler/support/number_range.h"
 #include "runtime/export/export_model.h"
+#include "runtime/export/plant_files.h"
 #include "runtime/graftal/library_words.h"
 #include "runtime/graftal/listed_graph.h"
 #include "runtime/image_files/image_files.h"
@@ -361,24 +362,36 @@ std::shared_ptr<const LoweredModel> lowered_in_place(Session& session, StageOpti
 }
 
 PlantTable table_of(const Plant& plant) {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    const auto row_or_none = [](std::uint32_t row) {
+        return row == PlantModule::none ? -1 : std::int64_t{row};
+    };
     PlantTable table;
     for (const PlantModule& module : plant.modules)
         table.parameter_count = std::max(table.parameter_count, module.parameters.size());
     for (const PlantModule& module : plant.modules) {
         table.names.push_back(plant.names[module.name]);
-        table.parents.push_back(module.parent == PlantModule::none ? -1 : std::int64_t{module.parent});
+        table.parents.push_back(row_or_none(module.parent));
         table.branches.push_back(module.branches);
         table.orders.push_back(module.order);
         table.ranks.push_back(module.rank);
+        table.parts_of.push_back(row_or_none(module.part_of));
+        table.organs.emplace_back(name_of(module.organ));
+        table.materials.push_back(module.material == PlantModule::no_name ? ""
+                                                                          : plant.materials[module.material]);
         table.ages.push_back(module.age);
+        table.lengths.push_back(module.length);
         table.widths.push_back(module.width);
+        table.areas.push_back(module.is_measured ? module.area : unknown);
+        table.volumes.push_back(module.is_measured ? module.volume : unknown);
         for (const auto& [of, vector] : {std::pair(&table.starts, module.start),
                                          {&table.ends, module.end},
-                                         {&table.headings, module.heading}})
+                                         {&table.headings, module.heading},
+                                         {&table.lefts, module.left},
+                                         {&table.ups, module.up}})
             of->insert(of->end(), {vector.x, vector.y, vector.z});
         table.parameters.insert(table.parameters.end(), module.parameters.begin(), module.parameters.end());
-        table.parameters.resize(table.names.size() * table.parameter_count,
-                                std::numeric_limits<double>::quiet_NaN());
+        table.parameters.resize(table.names.size() * table.parameter_count, unknown);
     }
     return table;
 }
@@ -492,7 +505,9 @@ Result<Drawn> Model::export_to(const std::string& path, const ExportSettings& se
             return std::nullopt;
         };
         const ExportFormat* const format = find_export_format(path);
-        if (!format) return fail(fmt::format("'{}' does not end in {}", path, export_endings()));
+        const PlantFormat* const plant = find_plant_format(path);
+        if (!format && !plant)
+            return fail(fmt::format("'{}' does not end in {}; {}", path, export_endings(), plant_endings()));
         const StageOptions& stages = parts_->options.compile;
         const ExportModelOptions options{stages,
                                          parts_->error_asked,
@@ -508,6 +523,14 @@ Result<Drawn> Model::export_to(const std::string& path, const ExportSettings& se
                                           .memory_bytes = stages.detail.memory_bytes,
                                           .nodes = settings.nodes,
                                           .metadata = {}}};
+        const Stopwatch watch;
+        if (!format) {
+            std::string vain = vain_plant_wish(*plant, options.file, false);
+            if (!vain.empty()) return fail(std::move(vain));
+            if (!export_plant(parts_->session, stages, *plant, options.file, compilation))
+                return std::nullopt;
+            return Drawn{path, watch.seconds()};
+        }
         if (const ExportWish* const wish = find_vain_wish(*format, options.file))
             return fail(fmt::format("{} is for {}, not for {}", wish->option, endings_with(wish->has),
                                     format->extension));
@@ -515,7 +538,6 @@ Result<Drawn> Model::export_to(const std::string& path, const ExportSettings& se
             return fail("unit is not a positive number of millimetres");
         if (settings.levels && *settings.levels < 2) return fail("levels is less than 2");
         if (settings.nodes && *settings.nodes < 1) return fail("nodes is less than 1");
-        const Stopwatch watch;
         if (!export_model(parts_->session, options, compilation)) return std::nullopt;
         return Drawn{path, watch.seconds()};
     });

@@ -101,9 +101,14 @@ struct PlantTable {
     std::vector<std::string> names;
     std::vector<std::int64_t> parents; ///< rows; -1 of the first
     std::vector<bool> branches;        ///< begins a branch of its parent, or follows it on the same axis
-    std::vector<std::int64_t> orders, ranks, ages; ///< an age of -1 is not known
-    std::vector<double> starts, ends, headings;    ///< x, y, z of each
-    std::vector<double> widths;
+    std::vector<std::int64_t> orders, ranks;
+    std::vector<std::int64_t> parts_of; ///< the row of the module in whose place it is drawn; -1: none
+    std::vector<std::string> organs;    ///< "segment", "ball", "disc", "polygon", "model"; "": draws nothing
+    std::vector<std::string> materials; ///< "": none
+    std::vector<double> ages;           ///< -1: not known
+    std::vector<double> starts, ends, headings, lefts, ups; ///< x, y, z of each
+    std::vector<double> lengths, widths;
+    std::vector<double> areas, volumes; ///< NaN: not known
     std::size_t parameter_count = 0;
     std::vector<double> parameters; ///< parameter_count of each; those that a module has not are NaN
 };
@@ -226,8 +231,8 @@ class GRAFTAL_API Model {
     /// Writes a POV-Ray scene: `.pov`, or `.inc` to be included, and the pictures that it needs.
     Result<Drawn> compile_to(const std::string& path);
     /// Writes a file for another program, as `graftal export` does: `.usda`, `.gltf`, `.glb`, `.obj`, `.ply`,
-    /// `.stl`, `.svg`, `.pbrt` or `.xml`. Small parts are left out of a model that ends only after
-    /// error_px().
+    /// `.stl`, `.svg`, `.pbrt` or `.xml`; `.csv`, `.json` or `.mtg` for plant(). Small parts are left out of
+    /// a model that ends only after error_px().
     Result<Drawn> export_to(const std::string& path, const ExportSettings& settings = {});
 
     Runs runs() const;

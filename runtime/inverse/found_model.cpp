@@ -120,17 +120,43 @@ std::string text_of(const FoundModel& found, const TargetPicture& picture, const
         found.maps.size(), found.maps.size() == 1 ? "" : "s", name, picture.width, picture.height,
         options.made_by, found.agreement.strict, found.agreement.tolerant, shortest(found.cell),
         found.cell == 1 ? "" : "s", found.agreement.chamfer, found.contractivity, found.bound);
+    const auto level = [](double value) { return shortest(std::round(1000 * value) / 1000); };
     const std::vector<double> chances = probabilities(found.maps);
     for (std::size_t i = 0; i < found.maps.size(); ++i) {
         const PlaneMap& m = found.maps[i];
         text += fmt::format("    w{}:", i + 1);
         for (const double value : {m.a, m.b, m.c, m.d, m.e, m.f, chances[i]})
             text += fmt::format(" {:>10}", shortest(value));
+        if (found.colours) {
+            const Rgb& rgb = found.colours->of_map[i];
+            text += fmt::format("   tint rgb <{}, {}, {}> {}", level(rgb.r), level(rgb.g), level(rgb.b),
+                                shortest(found.colours->alpha));
+        }
         text += "\n";
     }
     text += fmt::format("  }}\n}}\ncamera {{ orthographic  look_at: 0.5, {}, 0  width: 1 }}\n",
                         shortest(rounded(0.5 * picture.height / picture.width, 6)));
     return text;
+}
+
+/// The mean colours of the target's points, in their order.
+std::vector<Rgb> colours_of(const Target& target, const TargetPicture& picture, const Crop& crop) {
+    std::vector<Rgb> sums(crop.set.cells.size(), Rgb(0.0));
+    std::vector<double> pixels(crop.set.cells.size());
+    for (int y = 0; y < picture.cells.height; ++y)
+        for (int x = 0; x < picture.cells.width; ++x) {
+            if (!picture.cells.at(x, y)) continue;
+            const std::size_t cell = crop.set.index((x - crop.left) / crop.size, (y - crop.top) / crop.size);
+            sums[cell] += picture.colours[picture.cells.index(x, y)];
+            pixels[cell] += picture.pixels[picture.cells.index(x, y)];
+        }
+    std::vector<Rgb> colours;
+    for (const Vec2 p : target.points()) {
+        const std::size_t cell =
+            crop.set.index(static_cast<int>(p.x) - target.room(), static_cast<int>(p.y) - target.room());
+        colours.push_back(sums[cell] / pixels[cell]);
+    }
+    return colours;
 }
 
 /// Maps of a model to begin with, in cells.
@@ -195,7 +221,8 @@ double collage_distance(const Target& target, const PlaneMaps& maps) {
 std::optional<FoundModel> find_model(const FindOptions& options, const CancelFlag& cancel,
                                      Compilation& compilation) {
     TargetPicture picture;
-    compilation.status = read_target(options.target, options.criterion, picture, read_cells_a_side);
+    compilation.status =
+        read_target(options.target, options.criterion, picture, read_cells_a_side, options.in_colour);
     if (!compilation.status.ok()) return std::nullopt;
     if (picture.empty()) {
         compilation.diagnostics
@@ -235,6 +262,7 @@ std::optional<FoundModel> find_model(const FindOptions& options, const CancelFla
     AttractorPainter painter(target);
     painter.draw(written);
     found.agreement = painter.agreement_in_full();
+    if (options.in_colour) found.colours = fit_colours(target, written, colours_of(target, picture, crop));
     found.contractivity = largest_stretch(found.maps);
     found.epsilon = collage_distance(target, written);
     found.bound = (found.epsilon + half_diagonal) / (1 - found.contractivity);

@@ -229,9 +229,9 @@ class Refinement {
 };
 
 /// The growth of one map, for one length tau.
-class Growth {
+class MapGrowth {
   public:
-    Growth(const Target& target, std::span<const Vec2> inner, double tau_px, const MapRules& rules)
+    MapGrowth(const Target& target, std::span<const Vec2> inner, double tau_px, const MapRules& rules)
         : target_(target), inner_(inner), rules_(rules),
           scale_(1 / (static_cast<double>(inner.size()) * tau_px * tau_px)) {}
 
@@ -324,7 +324,7 @@ std::uint64_t grow(const Target& target, std::span<const Vec2> inner, std::span<
                    int iterations, const MapRules& rules, PlaneMap& map) {
     std::uint64_t work = 0;
     for (const double tau : tau_px)
-        work += Growth(target, inner, tau, rules).run(iterations, map);
+        work += MapGrowth(target, inner, tau, rules).run(iterations, map);
     return work;
 }
 

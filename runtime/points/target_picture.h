@@ -2,8 +2,10 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "compiler/support/status.h"
+#include "compiler/support/tint.h"
 #include "runtime/points/distance_transform.h"
 
 namespace graftal {
@@ -22,14 +24,17 @@ struct TargetPicture {
     int height = 0;
     int pixels_per_cell = 1; ///< along a side
     CellSet cells{0, 0};
+    std::vector<Rgb> colours;  ///< sums of linear light over the pixels of the set in each cell
+    std::vector<float> pixels; ///< and their numbers; both empty unless they were asked for
     bool by_alpha = false;
 
     bool empty() const;
 };
 
-/// Reads a picture row by row, into at most so many cells a side: memory goes with the cells.
+/// Reads a picture row by row, into at most so many cells a side: memory goes with the cells. `in_colour`:
+/// with the colours of the set.
 Status read_target(const std::string& path, const TargetCriterion& criterion, TargetPicture& target,
-                   int most_cells_a_side = std::numeric_limits<int>::max());
+                   int most_cells_a_side = std::numeric_limits<int>::max(), bool in_colour = false);
 
 /// "lighter than 0.5", and so on.
 std::string criterion_text(const TargetCriterion& criterion, bool by_alpha);

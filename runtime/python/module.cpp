@@ -188,11 +188,19 @@ PYBIND11_MODULE(_graftal, module) {
                  dict["parent"] = array_of(std::move(table.parents), {rows});
                  dict["order"] = array_of(std::move(table.orders), {rows});
                  dict["rank"] = array_of(std::move(table.ranks), {rows});
+                 dict["part_of"] = array_of(std::move(table.parts_of), {rows});
+                 dict["organ"] = table.organs;
+                 dict["material"] = table.materials;
                  dict["age"] = array_of(std::move(table.ages), {rows});
                  dict["start"] = array_of(std::move(table.starts), {rows, 3});
                  dict["end"] = array_of(std::move(table.ends), {rows, 3});
                  dict["heading"] = array_of(std::move(table.headings), {rows, 3});
+                 dict["left"] = array_of(std::move(table.lefts), {rows, 3});
+                 dict["up"] = array_of(std::move(table.ups), {rows, 3});
+                 dict["length"] = array_of(std::move(table.lengths), {rows});
                  dict["width"] = array_of(std::move(table.widths), {rows});
+                 dict["area"] = array_of(std::move(table.areas), {rows});
+                 dict["volume"] = array_of(std::move(table.volumes), {rows});
                  dict["parameters"] = array_of(std::move(table.parameters), {rows, parameters});
                  return dict;
              })

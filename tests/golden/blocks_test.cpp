@@ -56,7 +56,7 @@ TEST_F(Blocks, FaultsAreNamed) {
     } cases[] = {
         {"fit --blocks t.png -o t.rifs", 2, "'t.rifs': the name of the model must end in .pifs"},
         {"fit --blocks t.png --maps 3", 2, "--blocks"},
-        {"fit t.png --tolerance 3", 2, "--tolerance needs --blocks, or a drawing"},
+        {"fit t.png --tolerance 3", 2, "--tolerance is for drawings"},
         {"fit --blocks t.png --tolerance -1", 2, "--tolerance: '-1' is not a number from 0 to 255"},
         {"fit --blocks none.png", 3, "none.png"},
         {"fit --blocks t.png --memory 64K", 1, "has 96x80 pixels: to code them takes 1 MiB"},

@@ -44,9 +44,9 @@ TEST_F(CommandLine, PointsUsage) {
         {"fit a.png -o b.png", "'b.png': the name of the model must end in .rifs"},
         {"fit a.svg -o b.rifs", "'b.rifs': the name of the model must end in .lsys"},
         {"fit a.lsys", "'a.lsys' is the drawing: name another file by -o"},
-        {"fit a.svg --maps 3", "--maps, --similar and --start are for pictures"},
-        {"fit a.png --tolerance 0.1", "--tolerance needs --blocks, or a drawing"},
-        {"fit a.svg --tolerance 0.5", "--tolerance: for a drawing, it is a number from 1e-6 to 0.2"},
+        {"fit a.svg --maps 3", "--maps, --similar, --color and --start are for pictures"},
+        {"fit a.png --tolerance 0.1", "--tolerance is for drawings"},
+        {"fit a.svg --tolerance 0.5", "--tolerance: '0.5' is not a number from 1e-6 to 0.2"},
         {"fit a.png --maps 1", "--maps: '1' is not a whole number from 2 to 24"},
     };
     for (const auto& [arguments, message] : cases) {

@@ -168,7 +168,7 @@ class Package(unittest.TestCase):
         model = graftal.load(path, steps=4)
         plant = model.plant()
         self.assertEqual(len(plant), len(rows))
-        for key, column in (("order", "order"), ("rank", "rank"), ("width", "width"), ("length", "length")):
+        for key, column in (("order", "order"), ("rank", "rank"), ("width", "width"), ("length", "length"), ("area", "area"), ("age", "age")):
             np.testing.assert_allclose(plant[key], [float(row[header.index(column)]) for row in rows], atol=1e-12)
         self.assertEqual(list(plant["name"]), [row[header.index("name")] for row in rows])
         bears = plant["parent"] >= 0
@@ -177,8 +177,16 @@ class Package(unittest.TestCase):
             plant["order"][bears], plant["order"][plant["parent"][bears]] + plant["branches"][bears]
         )
         self.assertEqual(model.word().count("F"), int((plant["name"] == "F").sum()))
+        for ending in (".csv", ".json", ".mtg"):
+            model.export(self.path("python" + ending))
+            self.program("export", path, "--steps", "4", "-q", "-o", self.path("program" + ending))
+            self.assertEqual(
+                pathlib.Path(self.path("python" + ending)).read_bytes(), pathlib.Path(self.path("program" + ending)).read_bytes()
+            )
         with self.assertRaises(graftal.ModelError):
             graftal.load(scene("ifs/fern.rifs")).plant()
+        with self.assertRaisesRegex(Exception, "csv"):
+            model.export(self.path("a.xyz"))
 
     def test_points_are_those_of_the_program_to_the_bit(self):
         self.program("points", scene("ifs/fern.rifs"), "--points", "300000", "--seed", "7", "-q", "-o", self.path("a.ply"))

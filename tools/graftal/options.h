@@ -44,9 +44,11 @@ struct PointsSettings {
 struct FitSettings {
     std::size_t most_maps = 8;
     bool similar = false;
-    std::string start; ///< a model, or ""
+    bool in_colour = false; ///< a tint for each map, too
+    std::string start;      ///< a model, or ""
     bool blocks = false;
-    std::optional<double> tolerance; ///< with `blocks`, in levels of 255; of drawings, as a share of a line
+    /// With `blocks` in levels of 255; of drawings a share of the shortest line.
+    std::optional<double> tolerance;
 };
 
 /// Options of `studio`.

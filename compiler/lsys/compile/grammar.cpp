@@ -67,6 +67,7 @@ class GrammarBuilder {
         build_surroundings(block_, grammar_, diagnostics_);
         grammar_.needs_word |= grammar_.has_queries();
         if (diagnostics_.error_count() > errors_before_) return std::nullopt;
+        add_stay_rules();
         return std::move(grammar_);
     }
 
@@ -225,6 +226,41 @@ class GrammarBuilder {
         if (of_kind.size() <= rule.predecessor.symbol) of_kind.resize(rule.predecessor.symbol + 1u);
         of_kind[rule.predecessor.symbol].push_back(static_cast<std::uint32_t>(grammar_.rules.size()));
         grammar_.rules.push_back(std::move(rule));
+    }
+
+    /// For each production with a probability, one that leaves its module as it is; but not where modules
+    /// have ages, since it gives a new module.
+    void add_stay_rules() {
+        const auto productions = std::make_shared<std::deque<LsysProduction>>();
+        const std::size_t count = grammar_.rules.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            const LsysProduction& source = *grammar_.rules[i].source;
+            const LsysPattern predecessor = grammar_.rules[i].predecessor;
+            const TurtleCommand command = grammar_.commands[predecessor.symbol];
+            if (grammar_.rules[i].kind != RuleKind::produce || !source.probability ||
+                grammar_.ages[predecessor.symbol] || command == TurtleCommand::model ||
+                command == TurtleCommand::open_branch || command == TurtleCommand::close_branch)
+                continue;
+            LsysModule same{.symbol = source.predecessor.symbol, .span = source.span};
+            for (const Name& name : source.predecessor.parameters) {
+                Expression& parameter = same.parameters.emplace_back();
+                parameter.kind = Expression::Kind::name;
+                parameter.text = name.text;
+                parameter.span = name.span;
+            }
+            LsysProduction& stays = productions->emplace_back();
+            stays.predecessor = source.predecessor;
+            stays.successor = {{std::move(same)}, source.span};
+            stays.span = source.span;
+            LsysRule rule;
+            rule.source = &stays;
+            rule.predecessor = pattern(stays.predecessor, rule);
+            name_slots(rule);
+            compile(rule);
+            grammar_.rules[i].stays = static_cast<std::uint32_t>(grammar_.rules.size());
+            grammar_.rules.push_back(std::move(rule));
+        }
+        grammar_.stay_productions = productions;
     }
 
     /// The names that blocks assign and that mean nothing else are local values.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -70,6 +71,9 @@ struct LsysRule {
     LsysProgram after; ///< carried out before the successor is made
     std::optional<ExpressionCode> probability;
     std::vector<LsysTemplate> successor;
+    static constexpr std::uint32_t none = UINT32_MAX;
+    /// With a probability: the rule that leaves its module as it is, for what the probabilities leave.
+    std::uint32_t stays = none;
 
     bool has_context() const { return !left.empty() || !right.empty(); }
     /// Whether one module alone does not tell if it fits.
@@ -97,6 +101,7 @@ struct LsysGrammar {
     std::vector<Span> first_uses;        ///< of the symbols
     std::vector<LsysTemplate> axiom;
     std::vector<LsysRule> rules;
+    std::shared_ptr<const std::deque<LsysProduction>> stay_productions; ///< sources of the last of them
     /// The rules that may rewrite a symbol, of one kind, in the order in which they are tried: those with
     /// contexts first (ABOP, section 1.8), unless the block has it otherwise, else as the text has them.
     std::array<std::vector<std::vector<std::uint32_t>>, rule_kind_count> rules_of;

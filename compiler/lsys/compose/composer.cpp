@@ -204,6 +204,7 @@ bool LsysComposer::unfold(ModuleId module, Stage stage, std::uint32_t birth, std
 
 /// Goes on until the string ends, or a part is missing, whose task is then the last.
 bool LsysComposer::advance(Task& task) {
+    if (witness_) witness_->enter(task.frame);
     for (; task.at < task.string.size() && !task.turtle.finished(); ++task.at) {
         const ModuleId module = task.string[task.at];
         rewriter_.work();
@@ -217,7 +218,7 @@ bool LsysComposer::advance(Task& task) {
         const std::uint32_t birth = birth_of(module, task);
         const bool absolute = sizes_ && task.rule && sizes_->is_absolute(*task.rule, task.at);
         if (!rewritten_[rewriter_.modules().symbol(module)] || task.turtle.passing_over()) {
-            if (!draw(task, module, absolute)) return false;
+            if (!draw(task, module, absolute, birth)) return false;
             continue;
         }
         Lookup found{.module = module, .state = {}, .placing = {}};
@@ -226,15 +227,17 @@ bool LsysComposer::advance(Task& task) {
         if (!unfold(found.module, task.string_stage, birth, variant, unfolded)) return false;
         if (unfolded.aged) task.turtle.read_birth();
         if (!unfolded.by) {
-            if (!draw(task, module, absolute)) return false;
+            if (!draw(task, module, absolute, birth)) return false;
             continue;
         }
         if (!sizes_) found.state = state_of(task.turtle, found.placing.snap);
         const Stage stage = unfolded.kind == RuleKind::interpret ? 0 : task.string_stage;
         found.state.variant = variant;
         found.state.birth = birth;
-        const TurtlePart* part = parts_.find(found.module, stage, found.state);
-        if (!part) return start_task(found.module, stage, found.state, unfolded);
+        if (unfolded.kind == RuleKind::interpret && !begins_interpretation(task, module, absolute, birth))
+            return false;
+        const TurtlePart* part = witness_ ? nullptr : parts_.find(found.module, stage, found.state);
+        if (!part) return start_task(found, stage, unfolded);
         if (stage > 0) ++served_;
         task.turtle.append(*part, task.span, found.placing);
         if (!task.turtle.within_limits(task.span)) return false;
@@ -246,19 +249,22 @@ bool LsysComposer::advance(Task& task) {
 bool LsysComposer::draw_piece(Task& task, ModuleId piece) {
     double snap = 0;
     const bool is_branch = FoldedWord::is_branch(piece);
+    if (witness_ && task.turtle.passing_over()) return ++task.at, true;
     if (is_branch) task.turtle.open_branch();
     TurtleState state = state_of(task.turtle, snap);
     if (is_branch) task.turtle.close_branch();
     state.variant = variants_.child(task.start.variant, task.module, 0, task.at);
-    if (const TurtlePart* part = parts_.find(piece, 0, state)) {
+    if (const TurtlePart* part = witness_ ? nullptr : parts_.find(piece, 0, state)) {
         place_piece(task.turtle, piece, *part, task.span, snap);
         return true;
     }
+    if (witness_ && is_branch) witness_->opens_branch();
     tasks_.push_back({.module = piece,
                       .start = state,
                       .string = word_->piece(piece),
                       .span = task.span,
-                      .turtle = Turtle(context_, state)});
+                      .turtle = Turtle(context_, state),
+                      .frame = frame_of_child({})});
     return false;
 }
 
@@ -281,6 +287,13 @@ void LsysComposer::complete_piece() {
     TurtlePart part = std::move(task.turtle).finish();
     clean_exit(part);
     rewriter_.work_of_part(part.instances.size());
+    if (witness_) {
+        witness_->enter(parent.frame);
+        place_piece(parent.turtle, task.module, part, parent.span, 0);
+        if (is_branch) witness_->closes_branch();
+        ++parent.at;
+        return;
+    }
     if (is_branch) part.modules += 2;
     std::optional<Instance> line = line_for(part, task);
     part.instances =
@@ -318,8 +331,16 @@ bool LsysComposer::has_room(Span span) {
     return false;
 }
 
-bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& start,
-                              const Unfolded& unfolded) {
+/// The frame of a part that begins where the last task is.
+PartFrame LsysComposer::frame_of_child(const Placing& placing) const {
+    if (!witness_) return {};
+    const Turtle& turtle = tasks_.back().turtle;
+    return tasks_.back().frame.of_child(turtle.start_from_turtle(), placing.scale * turtle.scale());
+}
+
+bool LsysComposer::start_task(const Lookup& found, Stage stage, const Unfolded& unfolded) {
+    const ModuleId module = found.module;
+    const TurtleState& start = found.state;
     const bool repeated = unfolded.stage == stage;
     const unsigned count = repeated ? tasks_.back().repeated + 1 : 0;
     const Span span = unfolded.by->rule->source->span;
@@ -338,7 +359,9 @@ bool LsysComposer::start_task(ModuleId module, Stage stage, const TurtleState& s
                       .interprets = interprets,
                       .span = span,
                       .turtle = Turtle(context_, start),
-                      .repeated = count});
+                      .repeated = count,
+                      .placing = found.placing,
+                      .frame = frame_of_child(found.placing)});
     Task& task = tasks_.back();
     if (unfolded.random) task.turtle.read_variant();
     if (unfolded.aged) task.turtle.read_birth();
@@ -357,6 +380,15 @@ void LsysComposer::complete_task() {
     tasks_.pop_back();
     TurtlePart part = std::move(task.turtle).finish();
     clean_exit(part);
+    if (witness_) {
+        Task& parent = tasks_.back();
+        rewriter_.work_of_part(0);
+        witness_->enter(parent.frame);
+        parent.turtle.append(part, parent.span, task.placing);
+        if (task.interprets && !parent.interprets) witness_->ends(parent.turtle);
+        ++parent.at;
+        return;
+    }
     if (task.interprets) part.modules = 1;
     std::optional<Instance> line = line_for(part, task);
     const Mat3 frame = context_.limit ? chord_frame(part.start_from_exit.translation) : Mat3(1.0);

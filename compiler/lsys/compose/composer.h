@@ -18,6 +18,7 @@
 #include "compiler/lsys/turtle/model_placer.h"
 #include "compiler/lsys/turtle/state.h"
 #include "compiler/lsys/turtle/turtle.h"
+#include "compiler/lsys/turtle/witness.h"
 
 namespace graftal {
 
@@ -66,6 +67,10 @@ class LsysComposer {
     /// alike. Always the same word, which must outlive this.
     std::optional<TurtlePart> compose_word(const FoldedWord& word, unsigned steps, const TurtleState& start,
                                            double share = 0);
+
+    /// From now on the witness, which must outlive this, hears of the whole word: each part is composed again
+    /// wherever it stands, by the choices of chance that it is composed by once. O(modules of the word).
+    void tell(WordWitness& witness) { witness_ = &witness; }
 
     std::size_t part_count() const { return parts_.size(); }
     /// Whether most of them were placed once only.
@@ -119,6 +124,8 @@ class LsysComposer {
         Turtle turtle;
         std::size_t at = 0;    ///< next in the string
         unsigned repeated = 0; ///< parts around this one at the same stage
+        Placing placing;       ///< with a witness, in the task before
+        PartFrame frame;
     };
 
     Stage stage_before(unsigned steps) const;
@@ -134,13 +141,17 @@ class LsysComposer {
     std::optional<TurtlePart> run_from(Task first);
     bool run_tasks();
     bool advance(Task& task);
-    bool draw(Task& task, ModuleId module, bool absolute);
+    bool draw(Task& task, ModuleId module, bool absolute, std::uint32_t birth);
+    bool carry_out(Task& task, ModuleId module, bool absolute);
+    std::vector<double> written_parameters(const Task& task, ModuleId module, bool absolute) const;
+    bool begins_interpretation(const Task& task, ModuleId module, bool absolute, std::uint32_t birth);
     ModuleId in_units(ModuleId module, double unit);
     bool resize(Lookup& found, const Task& task, bool absolute);
     double stepped(double size, double& error);
     std::vector<double> parameters_of(ModuleId module) const;
     bool has_room(Span span);
-    bool start_task(ModuleId module, Stage stage, const TurtleState& start, const Unfolded& unfolded);
+    bool start_task(const Lookup& found, Stage stage, const Unfolded& unfolded);
+    PartFrame frame_of_child(const Placing& placing) const;
     std::optional<Instance> line_for(const TurtlePart& part, const Task& task);
     bool draw_piece(Task& task, ModuleId piece);
     void clean_exit(TurtlePart& part);
@@ -169,6 +180,7 @@ class LsysComposer {
     bool steps_unit_;
     bool too_many_parts_ = false;
     const FoldedWord* word_ = nullptr;
+    WordWitness* witness_ = nullptr;
     std::vector<Task> tasks_;
     PartTable parts_;
     std::unordered_map<ObjectId, Origin> origins_;

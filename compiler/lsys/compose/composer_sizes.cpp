@@ -90,7 +90,44 @@ double LsysComposer::stepped(double size, double& error) {
     return std::exp(nearest);
 }
 
-bool LsysComposer::draw(Task& task, ModuleId module, bool absolute) {
+/// The parameters of a module as the model writes them.
+std::vector<double> LsysComposer::written_parameters(const Task& task, ModuleId module, bool absolute) const {
+    std::vector<double> parameters = parameters_of(module);
+    if (!sizes_) return parameters;
+    const SymbolId symbol = rewriter_.modules().symbol(module);
+    const std::span<const ParameterRole> roles = sizes_->roles(symbol, parameters.size());
+    const double size = (absolute ? task.turtle.unit() : 1) * task.frame.size;
+    for (std::size_t i = 0; i < roles.size(); ++i)
+        if (roles[i] != ParameterRole::number) parameters[i] = unrounded(parameters[i] * size);
+    return parameters;
+}
+
+/// Tells the witness of a module of the word that others are drawn in place of.
+bool LsysComposer::begins_interpretation(const Task& task, ModuleId module, bool absolute,
+                                         std::uint32_t birth) {
+    if (!witness_ || task.interprets) return true;
+    const std::vector<double> parameters = written_parameters(task, module, absolute);
+    return witness_->begins({rewriter_.modules().symbol(module), parameters, birth, true}, task.turtle);
+}
+
+bool LsysComposer::draw(Task& task, ModuleId module, bool absolute, std::uint32_t birth) {
+    if (!witness_) return carry_out(task, module, absolute);
+    if (task.turtle.passing_over()) {
+        if (!carry_out(task, module, absolute)) return false;
+        if (!task.turtle.passing_over()) witness_->closes_branch();
+        return true;
+    }
+    const SymbolId symbol = rewriter_.modules().symbol(module);
+    const std::vector<double> parameters = written_parameters(task, module, absolute);
+    if (!task.interprets && !witness_->begins({symbol, parameters, birth}, task.turtle)) return false;
+    witness_->runs(symbol, parameters, task.turtle);
+    if (!carry_out(task, module, absolute)) return false;
+    if (!witness_->has_run(task.turtle)) return false;
+    if (!task.interprets) witness_->ends(task.turtle);
+    return true;
+}
+
+bool LsysComposer::carry_out(Task& task, ModuleId module, bool absolute) {
     const SymbolId symbol = rewriter_.modules().symbol(module);
     const TurtleCommand command = rewriter_.grammar().commands[symbol];
     const double unit = task.turtle.unit();

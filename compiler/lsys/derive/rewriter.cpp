@@ -150,6 +150,18 @@ bool LsysRewriter::sums_to_one(double sum, const LsysRule& first) {
     return false;
 }
 
+/// Whether the probabilities leave a share in which modules stay as they are, as in Houdini.
+bool LsysRewriter::leaves_some(double sum, const LsysRule& first) {
+    if (sum >= 1 - probability_slack || first.stays == LsysRule::none) return false;
+    if (!std::exchange(noted_rest_, true))
+        diagnostics_.note(
+            first.source->probability->span,
+            fmt::format("the probabilities of the productions that fit sum to {}: in the rest of "
+                        "all cases the module stays as it is",
+                        shortest(sum)));
+    return true;
+}
+
 Fit LsysRewriter::apply(Alternative& alternative, std::span<const double> values, const Moment& moment) {
     const LsysRule& rule = *alternative.rule;
     const auto slots = slots_of(rule, values, moment);

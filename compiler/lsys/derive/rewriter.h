@@ -135,8 +135,8 @@ class LsysRewriter {
 
     /// The rules that may rewrite a module of this many parameters, as competitors that share all draws; none
     /// if none fits. The first that fits decides: without a probability it is the only one; with one, all
-    /// others that fit and have one compete. Calls `enter(entrant)` for each, which gives a Fit and sets the
-    /// entrant's probability. False after an error.
+    /// others that fit and have one compete; what they leave below 1 leaves the module as it is. Calls
+    /// `enter(entrant)` for each, which gives a Fit and sets the entrant's probability. False after an error.
     template<typename Entrant, typename Enter>
     bool compete(RuleKind kind, SymbolId symbol, std::size_t arity, std::vector<Entrant>& entrants,
                  const Enter& enter);
@@ -176,6 +176,7 @@ class LsysRewriter {
     std::uint32_t compute(RuleKind kind, ModuleId module, const Moment& moment);
     std::vector<double> parameters(ModuleId module) const;
     bool sums_to_one(double sum, const LsysRule& first);
+    bool leaves_some(double sum, const LsysRule& first);
     std::span<const double> known_cells(RuleKind kind, double step) const;
     LsysMachine::State state_of(const LsysRule& rule, const Moment& moment, std::span<double> slots);
     void report(const ExpressionCode& code, const LsysRule* rule, std::span<const double> slots,
@@ -204,6 +205,7 @@ class LsysRewriter {
     std::vector<double> arguments_;
     std::vector<double> slots_;
     ModuleString drawn_;
+    bool noted_rest_ = false;
     bool failed_ = false;
 };
 
@@ -226,6 +228,15 @@ bool LsysRewriter::compete(RuleKind kind, SymbolId symbol, std::size_t arity, st
     double sum = 0;
     for (const Entrant& entrant : entrants)
         sum += entrant.probability;
+    if (leaves_some(sum, *entrants.front().rule)) {
+        Entrant stays;
+        stays.rule = &grammar_.rules[entrants.front().rule->stays];
+        if (enter(stays) != Fit::yes) return false;
+        stays.probability = 1 - sum;
+        entrants.push_back(std::move(stays));
+        share_draws(entrants, 1.0);
+        return true;
+    }
     if (!sums_to_one(sum, *entrants.front().rule)) return false;
     share_draws(entrants, sum);
     return true;

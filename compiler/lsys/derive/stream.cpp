@@ -47,7 +47,9 @@ bool LsysStream::run() {
         Frame& frame = frames_.back();
         if (frame.at == frame.string->size()) {
             values_.resize(frame.slots);
+            const bool ends_module = frame.repeated == 1;
             frames_.pop_back();
+            if (witness_ && ends_module) witness_->ends(*turtle_);
             continue;
         }
         rewriter_.work();
@@ -116,6 +118,9 @@ bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
         if (!choose_rule(RuleKind::interpret, module, moment, draw, chosen)) return false;
         if (chosen.rule) {
             if (chosen.rule->is_random()) ++interpreted_;
+            if (witness_ && repeated == 0 && !turtle_->passing_over() &&
+                !witness_->begins({module.symbol, parameters(module), module.birth, true}, *turtle_))
+                return false;
             if (repeated < most_interpretations) {
                 return push(chosen, module, moment,
                             {.word = options_.steps,
@@ -128,6 +133,18 @@ bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
         }
     }
     if (!turtle_) return ++drawn_ <= options_.max_modules;
+    if (!witness_ || turtle_->passing_over()) return carry_out(module);
+    const bool in_word = repeated == 0;
+    if (in_word && !witness_->begins({module.symbol, parameters(module), module.birth}, *turtle_))
+        return false;
+    witness_->runs(module.symbol, parameters(module), *turtle_);
+    if (!carry_out(module)) return false;
+    if (!witness_->has_run(*turtle_)) return false;
+    if (in_word) witness_->ends(*turtle_);
+    return true;
+}
+
+bool LsysStream::carry_out(const Module& module) {
     const TurtleCommand command = grammar_.commands[module.symbol];
     std::optional<PlacedModel> model;
     if (command == TurtleCommand::model && !turtle_->passing_over()) {
@@ -135,7 +152,10 @@ bool LsysStream::emit(const Module& module, std::uint32_t repeated) {
         if (!model) return false;
     }
     rewriter_.work_of_drawing();
-    return turtle_->run(command, parameters(module), model, module.span);
+    const bool was_cut = turtle_->passing_over();
+    if (!turtle_->run(command, parameters(module), model, module.span)) return false;
+    if (witness_ && was_cut && !turtle_->passing_over()) witness_->closes_branch();
+    return true;
 }
 
 /// Goes on with what a rule makes of the module; false after an error.
@@ -211,6 +231,8 @@ bool LsysStream::draw(const FoldedWord& word, std::span<const ModuleId> string) 
 
 bool LsysStream::draw_bracket(TurtleCommand command) {
     ++modules_;
+    if (witness_ && command == TurtleCommand::open_branch) witness_->opens_branch();
+    if (witness_ && command == TurtleCommand::close_branch) witness_->closes_branch();
     return turtle_->run(command, {}, std::nullopt, grammar_.source->axiom->span);
 }
 

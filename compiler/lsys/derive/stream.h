@@ -9,6 +9,7 @@
 #include "compiler/lsys/derive/rewriter.h"
 #include "compiler/lsys/turtle/model_placer.h"
 #include "compiler/lsys/turtle/turtle.h"
+#include "compiler/lsys/turtle/witness.h"
 #include "compiler/support/counter_random.h"
 
 namespace graftal {
@@ -44,6 +45,9 @@ class LsysStream {
     bool count();
     /// Draws a word that is derived already. Requires can_draw().
     bool draw(const FoldedWord& word, Turtle& turtle);
+
+    /// From now on the witness, which must outlive this, hears of what is drawn.
+    void tell(WordWitness& witness) { witness_ = &witness; }
 
     /// Number of modules of the word.
     std::uint64_t module_count() const { return modules_; }
@@ -81,6 +85,7 @@ class LsysStream {
     bool emit(const Module& module, std::uint32_t repeated);
     bool draw(const FoldedWord& word, std::span<const ModuleId> string);
     bool draw_bracket(TurtleCommand command);
+    bool carry_out(const Module& module);
     bool push(const Chosen& chosen, const Module& module, const Moment& moment, Frame frame);
     bool choose_rule(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
                      Chosen& chosen);
@@ -95,6 +100,7 @@ class LsysStream {
     Diagnostics& diagnostics_;
     Options options_;
     Turtle* turtle_ = nullptr; ///< draws; null: nobody draws
+    WordWitness* witness_ = nullptr;
     CounterRandom random_;
     bool chooses_ = false; ///< by chance, in steps
     std::vector<Frame> frames_;

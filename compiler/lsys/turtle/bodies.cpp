@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -25,7 +26,57 @@ Affine on_corners(Vec3 a, Vec3 b, Vec3 c) {
     return {Mat3(x, y, normal / std::sqrt(glm::length(normal))), centre};
 }
 
+/// A round piece, without its ends.
+DrawnBody frustum(double length, double from_width, double width) {
+    const double slant = std::hypot(length, (from_width - width) / 2);
+    const double squares = from_width * from_width + from_width * width + width * width;
+    return {.organ = Organ::segment,
+            .length = length,
+            .width = width,
+            .area = std::numbers::pi * (from_width + width) / 2 * slant,
+            .volume = std::numbers::pi / 12 * length * squares};
+}
+
+DrawnBody ball(double diameter) {
+    const double area = std::numbers::pi * diameter * diameter;
+    return {.organ = Organ::ball, .width = diameter, .area = area, .volume = area * diameter / 6};
+}
+
+DrawnBody disc(double diameter) {
+    return {.organ = Organ::disc, .width = diameter, .area = std::numbers::pi * diameter * diameter / 4};
+}
+
+DrawnBody polygon(std::span<const Vec3> corners) {
+    DrawnBody body{.organ = Organ::polygon};
+    for (const auto& [a, b, c] : triangulate(corners))
+        body.area += glm::length(glm::cross(corners[b] - corners[a], corners[c] - corners[a])) / 2;
+    return body;
+}
+
+/// The area of one side of a model that is made of triangles only, as blades of leaves are; nothing of
+/// others, nor of many.
+std::optional<double> flat_area(const Graph& graph, ObjectId id, const Mat3& linear, int& most) {
+    const Object& object = graph.objects[id];
+    if (--most < 0 || object.is_combined() || object.packed) return std::nullopt;
+    if (object.primitive) {
+        if (*object.primitive != PrimitiveKind::triangle) return std::nullopt;
+        return 0.75 * std::numbers::sqrt3 * glm::length(glm::cross(linear[0], linear[1]));
+    }
+    double sum = 0;
+    for (const Instance& part : object.instances) {
+        const auto area = flat_area(graph, part.master, linear * part.parent_from_child.linear, most);
+        if (!area) return std::nullopt;
+        sum += *area;
+    }
+    return sum;
+}
+
 } // namespace
+
+void TurtleBodies::tell(DrawnBody body, int colour) const {
+    body.material = palette_[static_cast<std::size_t>(colour)].name;
+    witness_->draws(body);
+}
 
 void TurtleBodies::widen_packed(double factor) {
     for (std::size_t i = 0; i < packed_count(); ++i) {
@@ -77,6 +128,7 @@ void TurtleBodies::add_item(RunShape shape, Vec3 base, Vec3 axis, double radius,
 
 void TurtleBodies::add_segment(const Affine& start_from_turtle, double length, double width, int colour,
                                Span span, BodySink sink) {
+    if (witness_) return tell(frustum(std::abs(length), width, width), colour);
     if (length == 0 || width == 0) return;
     const double radius = width / 2;
     if (run_) {
@@ -96,6 +148,11 @@ void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double 
     if (width > from_width) std::swap(thick, thin);
     const Vec3 y = thin - thick;
     const double length = glm::length(y), radius = std::max(width, from_width) / 2;
+    if (witness_) {
+        DrawnBody body = frustum(length, from_width, width);
+        body.start = from;
+        return tell(body, colour);
+    }
     if (!(length > 0) || !(radius > 0)) return;
     // Round it may face anywhere: as the turtle does, so that equal pieces stay equal.
     Vec3 x = start_from_turtle.linear[0] - glm::dot(start_from_turtle.linear[0], y) / (length * length) * y;
@@ -127,6 +184,7 @@ std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {
 void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span,
                               BodySink sink) {
     diameter = at_least_size(diameter);
+    if (witness_) return tell(ball(std::abs(diameter)), colour);
     if (diameter == 0) return;
     if (run_) {
         const double radius = std::abs(diameter) / 2;
@@ -140,6 +198,7 @@ void TurtleBodies::add_sphere(const Affine& start_from_turtle, double diameter, 
 void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span,
                             BodySink sink) {
     diameter = at_least_size(diameter);
+    if (witness_) return tell(disc(std::abs(diameter)), colour);
     if (diameter == 0) return;
     const Affine upright = start_from_turtle * Affine::rotate({1, 0, 0}, 90);
     const double thickness = disc_thickness * diameter;
@@ -156,6 +215,7 @@ void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, in
 }
 
 void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink) {
+    if (witness_) return tell(polygon(corners), colour);
     for (const auto& [a, b, c] : triangulate(corners)) {
         const Affine place = on_corners(corners[a], corners[b], corners[c]);
         if (is_finite(place)) add(PrimitiveKind::triangle, place, colour, span, sink);
@@ -164,6 +224,13 @@ void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span s
 
 void TurtleBodies::add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span,
                              BodySink sink) {
+    if (witness_) {
+        int triangles_left = 1000;
+        const std::optional<double> area =
+            flat_area(graph_, model.root, Affine::scale(model.scale).linear, triangles_left);
+        return witness_->draws(
+            {.organ = Organ::model, .area = area.value_or(0), .is_measured = area.has_value()});
+    }
     const Vec3 scale(at_least_size(model.scale.x), at_least_size(model.scale.y),
                      at_least_size(model.scale.z));
     if (scale.x == 0 || scale.y == 0) return;

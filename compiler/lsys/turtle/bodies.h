@@ -12,6 +12,7 @@
 #include "compiler/graph/graph.h"
 #include "compiler/graph/run.h"
 #include "compiler/lsys/turtle/model_placer.h"
+#include "compiler/lsys/turtle/witness.h"
 
 namespace graftal {
 
@@ -36,6 +37,9 @@ class TurtleBodies {
         : graph_(graph), palette_(std::move(palette)), run_(packs ? std::make_shared<Run>() : nullptr) {
         ids_.resize(palette_.size());
     }
+
+    /// From now on bodies are told to the witness, which must outlive this, and not made.
+    void tell(WordWitness& witness) { witness_ = &witness; }
 
     /// The place in the palette, from 0 on, of a whole number that is counted around it.
     int colour_index(double number) const;
@@ -63,6 +67,7 @@ class TurtleBodies {
     PackedEdges take_packed();
 
   private:
+    void tell(DrawnBody body, int colour) const;
     MaterialId material(int colour);
     void add_item(RunShape shape, Vec3 base, Vec3 axis, double radius, Vec3 x, bool ball, int colour,
                   const BodySink& sink);
@@ -72,9 +77,10 @@ class TurtleBodies {
     }
 
     Graph& graph_;
-    std::vector<Material> palette_;                      ///< not empty
-    std::vector<std::optional<MaterialId>> ids_;         ///< of the palette's materials used so far
-    std::shared_ptr<Run> run_;                           ///< of round bodies, or null
+    std::vector<Material> palette_;              ///< not empty
+    std::vector<std::optional<MaterialId>> ids_; ///< of the palette's materials used so far
+    std::shared_ptr<Run> run_;                   ///< of round bodies, or null
+    WordWitness* witness_ = nullptr;
     std::unordered_map<Primitive, ObjectId> primitives_; ///< primitives used so far
 };
 

@@ -150,7 +150,12 @@ class Turtle {
     /// The state of a part that begins here.
     TurtleState state() const;
     double unit() const { return state_.unit; }
+    double scale() const { return scale_; } ///< by which lengths are longer here
     bool is_scaled() const { return scale_ != 1; }
+    /// The diameter of a segment from here on; where widths are per length, of one that is a step long.
+    double diameter() const {
+        return context_.relative_width ? state_.width * scale_ * context_.step * state_.unit : state_.width;
+    }
     const Affine& start_from_turtle() const { return start_from_turtle_; }
     /// True where modules are cut off: run() and append() pass over them, but watch the brackets.
     bool passing_over() const { return cut_depth_ > 0; }

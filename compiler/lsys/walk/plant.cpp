@@ -1,17 +1,15 @@
 #include "compiler/lsys/walk/plant.h"
 
-#include <unordered_map>
+#include <algorithm>
 #include <utility>
 
-#include "compiler/lsys/walk/walk.h"
+#include "compiler/lsys/derive/word.h"
 
 namespace graftal {
 
 namespace {
 
-/// The random sequence that chooses interpretations here.
-constexpr std::uint64_t growing = UINT64_MAX - 4;
-
+/// Whether a module is a part of the plant where others are drawn in its place.
 bool is_part(TurtleCommand command) {
     switch (command) {
     case TurtleCommand::none:
@@ -27,88 +25,136 @@ bool is_part(TurtleCommand command) {
     }
 }
 
-/// Takes the modules of a word as the turtle comes to them.
-class PlantBuilder : private LsysWalk::Listener {
-  public:
-    PlantBuilder(const DerivedWord& derived)
-        : derived_(derived), grammar_(derived.rewriter.grammar()), modules_(derived.rewriter.modules()) {}
-
-    std::optional<Plant> run(std::uint64_t seed, Diagnostics& diagnostics) {
-        LsysWalk walk(derived_.rewriter, diagnostics, CounterRandom(seed).sequence(growing));
-        plant_.steps = derived_.steps;
-        if (!walk.run(derived_.steps, derived_.word, grammar_.width.value_or(0), *this)) return std::nullopt;
-        return std::move(plant_);
-    }
-
-  private:
-    /// The axis that the turtle is on.
-    struct Axis {
-        std::uint32_t last = PlantModule::none; ///< module on it, or the one that it leaves
-        bool begins = false;                    ///< nothing stands on it yet
-        std::uint32_t order = 0, next_rank = 0;
-    };
-
-    void begins(std::size_t at, const Turtle& turtle) override {
-        const ModuleId id = derived_.word[at];
-        const SymbolId symbol = modules_.symbol(id);
-        const TurtleCommand command = grammar_.commands[symbol];
-        taken_ = false;
-        if (command == TurtleCommand::open_branch) {
-            axes_.push_back(axis_);
-            // A branch that begins where another has just begun leaves the same module.
-            const bool leaves = axis_.last != PlantModule::none && !axis_.begins;
-            axis_ = {axis_.last, true, axis_.order + (leaves ? 1 : 0), 0};
-        } else if (command == TurtleCommand::close_branch && !axes_.empty()) {
-            axis_ = axes_.back();
-            axes_.pop_back();
-        }
-        if (!is_part(command) || turtle.passing_over()) return;
-        taken_ = true;
-        PlantModule module;
-        module.name = name_of(symbol);
-        const std::span<const double> parameters = modules_.parameters(id);
-        module.parameters.assign(parameters.begin(), parameters.end());
-        module.parent = axis_.last;
-        module.branches = axis_.begins && axis_.last != PlantModule::none;
-        module.order = axis_.order;
-        module.rank = axis_.next_rank++;
-        module.start = turtle.start_from_turtle().translation;
-        module.heading = turtle.start_from_turtle().linear[1];
-        if (const std::uint32_t birth = modules_.birth(id); birth != ModuleTable::no_birth)
-            module.age = static_cast<std::int64_t>(derived_.steps) - birth;
-        axis_.last = static_cast<std::uint32_t>(plant_.modules.size());
-        axis_.begins = false;
-        plant_.modules.push_back(std::move(module));
-    }
-
-    void ends(std::size_t, const Turtle& turtle) override {
-        if (!taken_) return;
-        PlantModule& module = plant_.modules.back();
-        module.end = turtle.start_from_turtle().translation;
-        module.width = turtle.state().width;
-    }
-
-    std::uint16_t name_of(SymbolId symbol) {
-        const auto [known, fresh] =
-            names_.try_emplace(symbol, static_cast<std::uint16_t>(plant_.names.size()));
-        if (fresh) plant_.names.push_back(grammar_.symbols[symbol]);
-        return known->second;
-    }
-
-    const DerivedWord& derived_;
-    const LsysGrammar& grammar_;
-    const ModuleTable& modules_;
-    Plant plant_;
-    std::unordered_map<SymbolId, std::uint16_t> names_;
-    Axis axis_;
-    std::vector<Axis> axes_; ///< of the branches under way
-    bool taken_ = false;
-};
-
 } // namespace
 
-std::optional<Plant> plant_of(const DerivedWord& derived, std::uint64_t seed, Diagnostics& diagnostics) {
-    return PlantBuilder(derived).run(seed, diagnostics);
+bool PlantBuilder::begins(const Module& module, const Turtle& turtle) {
+    if (!has_room()) return false;
+    age_ = module.birth == ModuleTable::no_birth ? -1 : plant_.steps - module.birth;
+    const TurtleCommand command = grammar_.commands[module.symbol];
+    if (!(module.is_interpreted ? is_part(command) : command == TurtleCommand::none)) return true;
+    const Axis before = axis_;
+    add(row(module.symbol, module.parameters, turtle));
+    if (!module.is_interpreted) return true;
+    whole_ = axis_.last;
+    whole_depth_ = axes_.size();
+    axis_ = before; // parts are borne by what bears the whole
+    return true;
+}
+
+void PlantBuilder::ends(const Turtle& turtle) {
+    if (whole_ == PlantModule::none) return;
+    PlantModule& whole = plant_.modules[whole_];
+    end(whole, turtle);
+    if (axes_.size() == whole_depth_) axis_ = {whole_, false, whole.order, whole.rank + 1};
+    whole_ = PlantModule::none;
+}
+
+void PlantBuilder::runs(SymbolId symbol, std::span<const double> parameters, const Turtle& turtle) {
+    const TurtleCommand command = grammar_.commands[symbol];
+    if (command == TurtleCommand::open_branch) opens_branch();
+    if (command == TurtleCommand::close_branch) closes_branch();
+    next_ = row(symbol, parameters, turtle);
+    first_ = plant_.modules.size();
+    if (command == TurtleCommand::open_polygon) polygons_.push_back(next_);
+}
+
+bool PlantBuilder::has_run(const Turtle& turtle) {
+    for (std::size_t i = first_; i < plant_.modules.size(); ++i)
+        end(plant_.modules[i], turtle);
+    // A cut takes polygons away that began in its branch.
+    if (turtle.passing_over() && !polygons_.empty())
+        polygons_.resize(std::min<std::size_t>(polygons_.size(), turtle.state().open_polygons));
+    return has_room();
+}
+
+bool PlantBuilder::has_room() {
+    return plant_.modules.size() <= most_rows_ ||
+           refuse_length(grammar_, most_rows_, static_cast<std::uint32_t>(plant_.steps), diagnostics_);
+}
+
+/// A row for the body; of a polygon it begins where the polygon does.
+void PlantBuilder::draws(const DrawnBody& body) {
+    PlantModule drawn = next_;
+    if (body.organ == Organ::polygon && !polygons_.empty()) {
+        drawn = std::move(polygons_.back());
+        polygons_.pop_back();
+    }
+    const double size = frame_.size;
+    drawn.organ = body.organ;
+    if (body.start) drawn.start = frame_.place(*body.start);
+    if (!body.material.empty()) drawn.material = material(body.material);
+    drawn.length = size * body.length;
+    drawn.width = size * body.width;
+    drawn.area = size * size * body.area;
+    drawn.volume = size * size * size * body.volume;
+    drawn.is_measured = body.is_measured;
+    if (whole_ != PlantModule::none) {
+        drawn.part_of = whole_;
+        PlantModule& whole = plant_.modules[whole_];
+        whole.length += drawn.length;
+        whole.area += drawn.area;
+        whole.volume += drawn.volume;
+        whole.is_measured = whole.is_measured && drawn.is_measured;
+    }
+    add(std::move(drawn));
+}
+
+/// A branch that begins where another has just begun leaves the same module.
+void PlantBuilder::opens_branch() {
+    axes_.push_back(axis_);
+    const bool leaves = axis_.last != PlantModule::none && !axis_.begins;
+    axis_ = {axis_.last, true, axis_.order + (leaves ? 1 : 0), 0};
+}
+
+void PlantBuilder::closes_branch() {
+    if (axes_.empty()) return;
+    axis_ = axes_.back();
+    axes_.pop_back();
+}
+
+/// A row for a module where the turtle is.
+PlantModule PlantBuilder::row(SymbolId symbol, std::span<const double> parameters, const Turtle& turtle) {
+    const Affine world_from_turtle = frame_.of_child(turtle.start_from_turtle(), 1).world_from_part;
+    PlantModule row;
+    row.name = symbol; // add() numbers names
+    row.parameters.assign(parameters.begin(), parameters.end());
+    row.start = world_from_turtle.translation;
+    row.heading = world_from_turtle.linear[1];
+    row.left = -world_from_turtle.linear[0];
+    row.up = world_from_turtle.linear[2];
+    row.age = age_;
+    end(row, turtle);
+    return row;
+}
+
+/// Puts the row on the axis.
+void PlantBuilder::add(PlantModule row) {
+    row.name = name_of_symbol(row.name);
+    row.parent = axis_.last;
+    row.branches = axis_.begins && axis_.last != PlantModule::none;
+    row.order = axis_.order;
+    row.rank = axis_.next_rank++;
+    axis_.last = static_cast<std::uint32_t>(plant_.modules.size());
+    axis_.begins = false;
+    plant_.modules.push_back(std::move(row));
+}
+
+void PlantBuilder::end(PlantModule& row, const Turtle& turtle) const {
+    row.end = frame_.place(turtle.start_from_turtle().translation);
+    if (row.organ == Organ::none) row.width = frame_.size * turtle.diameter();
+}
+
+std::uint16_t PlantBuilder::name_of_symbol(SymbolId symbol) {
+    const auto [known, fresh] = names_.try_emplace(symbol, static_cast<std::uint16_t>(plant_.names.size()));
+    if (fresh) plant_.names.push_back(grammar_.symbols[symbol]);
+    return known->second;
+}
+
+std::uint16_t PlantBuilder::material(std::string_view name) {
+    const auto known = std::ranges::find(plant_.materials, name);
+    const auto number = static_cast<std::uint16_t>(known - plant_.materials.begin());
+    if (known == plant_.materials.end()) plant_.materials.emplace_back(name);
+    return number;
 }
 
 } // namespace graftal

@@ -24,7 +24,7 @@ LsysQueries::LsysQueries(LsysRewriter& rewriter, Diagnostics& diagnostics, std::
 
 bool LsysQueries::answer(std::uint32_t step, ModuleString& word) {
     met_.clear();
-    failed_ = failed_ || !walk_.run(step, word, 0, *this) || !ask_environment();
+    failed_ = failed_ || !walk_.run(step, word, *this) || !ask_environment();
     if (failed_) return false;
     ModuleTable& modules = rewriter_.modules();
     for (const Met& met : met_)

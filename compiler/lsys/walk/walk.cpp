@@ -49,17 +49,14 @@ LsysWalk::LsysWalk(LsysRewriter& rewriter, Diagnostics& diagnostics, CounterRand
     context_.max_instances = SIZE_MAX / 2;
 }
 
-bool LsysWalk::run(std::uint32_t step, const ModuleString& word, double width, Listener& listener) {
-    TurtleState start = turtle_start(grammar_);
-    start.width = width;
-    turtle_ = std::make_unique<Turtle>(context_, start);
+bool LsysWalk::run(std::uint32_t step, const ModuleString& word, Listener& listener) {
+    turtle_ = std::make_unique<Turtle>(context_, turtle_start(grammar_));
     listener_ = &listener;
     chosen_ = 0;
     step_ = step;
     for (at_ = 0; at_ < word.size(); ++at_) {
         levels_.clear();
         const std::uint32_t birth = rewriter_.modules().birth(word[at_]);
-        listener.begins(at_, *turtle_);
         if (!meet(word[at_], birth, true)) return false;
         while (!levels_.empty()) {
             Level& level = levels_.back();
@@ -68,7 +65,6 @@ bool LsysWalk::run(std::uint32_t step, const ModuleString& word, double width, L
             else if (!meet(level.string[level.next++], birth, false))
                 return false;
         }
-        listener.ends(at_, *turtle_);
     }
     return true;
 }

@@ -28,18 +28,15 @@ class LsysWalk {
     class Listener {
       public:
         virtual ~Listener() = default;
-        /// A module of the word, before and after it and all that it is drawn as.
-        virtual void begins(std::size_t, const Turtle&) {}
-        virtual void ends(std::size_t, const Turtle&) {}
         /// A query, in the word at this place or in what a module there is drawn as.
-        virtual void asks(ModuleId, std::size_t, bool, const Turtle&) {}
+        virtual void asks(ModuleId module, std::size_t at, bool in_word, const Turtle& turtle) = 0;
     };
 
     /// Both must outlive this. `random`: what chooses interpretations.
     LsysWalk(LsysRewriter& rewriter, Diagnostics& diagnostics, CounterRandom random);
 
     /// Walks along the word after a step; false after an error. O(modules that are drawn).
-    bool run(std::uint32_t step, const ModuleString& word, double width, Listener& listener);
+    bool run(std::uint32_t step, const ModuleString& word, Listener& listener);
 
   private:
     /// A string that is drawn in place of a module, under way.

@@ -390,12 +390,30 @@ class GltfWriter {
             pbr.baseColorTexture.index = texture_of(*surface.material);
             if (look.opacity == 1 && material.coverage < 1) made.alphaMode = "MASK"; // at 1/2, as graftal's
         }
+        if (material.translucency > 0) let_light_through(made, material);
         model_.materials.push_back(std::move(made));
         return known->second;
     }
 
+    /// A share of the diffuse light goes through, as in leaves, and takes on the colour of the surface.
+    void let_light_through(tinygltf::Material& made, const Material& material) {
+        GltfObject diffuse;
+        diffuse["diffuseTransmissionFactor"] =
+            tinygltf::Value(material.translucency / (material.translucency + material.diffuse));
+        const auto& base = made.pbrMetallicRoughness;
+        diffuse["diffuseTransmissionColorFactor"] = tinygltf::Value(tinygltf::Value::Array{
+            tinygltf::Value(base.baseColorFactor[0]), tinygltf::Value(base.baseColorFactor[1]),
+            tinygltf::Value(base.baseColorFactor[2])});
+        if (base.baseColorTexture.index >= 0)
+            diffuse["diffuseTransmissionColorTexture"] =
+                tinygltf::Value(GltfObject{{"index", tinygltf::Value(base.baseColorTexture.index)}});
+        made.extensions["KHR_materials_diffuse_transmission"] = tinygltf::Value(diffuse);
+        uses("KHR_materials_diffuse_transmission");
+    }
+
     int texture_of(MaterialId material) {
         tinygltf::Image image;
+        image.name = PictureCopies::stem(scene_.materials[material]);
         image.mimeType = "image/png";
         image.bufferView = view_of(pictures_.png(material), 0);
         model_.images.push_back(std::move(image));
@@ -488,6 +506,8 @@ Status write_gltf_file(const ExportJob& job, ExportReport& report, bool binary) 
         resolve_looks(job.scene, {most_looks}, job.model, job.diagnostics);
     job.too_large = !scene;
     if (!scene) return {};
+    if (job.view.sky_light)
+        job.diagnostics.note(job.model, "glTF has no light of the sky: graftal leaves it out of the file");
     GltfWriter writer(job, *scene);
     Status made = writer.make();
     if (!made.ok() || job.diagnostics.has_errors()) return made;

@@ -177,7 +177,7 @@ class MitsubaWriter {
         }
         if (!job_.view.sky_light) return;
         file_.text("    <emitter type=\"constant\">\n");
-        rgb(8, "radiance", job_.view.ambient_light());
+        rgb(8, "radiance", job_.view.sky_light->average());
         file_.text("    </emitter>\n");
     }
 

@@ -108,7 +108,7 @@ class PbrtWriter {
         }
         if (job_.view.sky_light)
             file_.print("LightSource \"infinite\" \"rgb L\" [ {} ]\n",
-                        pbrt_vector(job_.view.ambient_light()));
+                        pbrt_vector(job_.view.sky_light->average()));
         file_.text("\n");
     }
 

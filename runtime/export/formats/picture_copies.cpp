@@ -1,9 +1,11 @@
 #include "runtime/export/formats/picture_copies.h"
 
+#include <cctype>
 #include <filesystem>
 
 #include <fmt/format.h>
 
+#include "runtime/image_files/image_files.h"
 #include "runtime/system/temporary_directory.h"
 
 namespace graftal {
@@ -12,18 +14,50 @@ std::string PictureCopies::name(MaterialId id) {
     const std::string& picture = job_.scene.materials[id].texture;
     const auto [known, is_new] = names_.try_emplace(picture);
     if (!is_new) return known->second;
-    const std::filesystem::path output = job_.options.output;
-    const std::string name = fmt::format("{}_{}.png", output.stem().string(), names_.size());
-    known->second = name;
+    const std::string name = known->second = unused(stem(job_.scene.materials[id]), ".png");
     Status status;
     const std::shared_ptr<const Texture> texture = job_.textures.load(picture, status);
     if (texture) {
-        pending_.push_back(std::make_unique<PendingFile>((output.parent_path() / name).string()));
-        status = pending_.back()->status();
-        if (status.ok()) status = write_texture(*pending_.back(), *texture);
+        PendingFile& file = begin(name);
+        status = file.status();
+        if (status.ok()) status = write_texture(file, *texture);
     }
     if (status_.ok()) status_ = status;
     return name;
+}
+
+std::string PictureCopies::sky(const SkyPicture& picture) {
+    const std::string name = unused("sky", ".exr");
+    Image image{picture.width(), picture.height(), 3, {}};
+    for (const SkyPicture::Texel& texel : picture.texels())
+        image.pixels.insert(image.pixels.end(), texel.begin(), texel.end());
+    PendingFile& file = begin(name);
+    Status status = file.status();
+    if (status.ok()) status = write_image(file, image, SampleFormat::linear16);
+    if (status_.ok()) status_ = status;
+    return name;
+}
+
+std::string PictureCopies::stem(const Material& material) {
+    std::string stem = std::filesystem::path(material.texture).stem().string().substr(0, 64);
+    for (char& c : stem)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+    return stem;
+}
+
+/// The name of a picture begins with that of the file, so that no picture of the model is lost to its copy.
+std::string PictureCopies::unused(const std::string& stem, std::string_view ending) {
+    const std::string first =
+        fmt::format("{}_{}", std::filesystem::path(job_.options.output).stem().string(), stem);
+    std::string name = first;
+    for (int number = 2; !used_.insert(name).second; ++number)
+        name = fmt::format("{}_{}", first, number);
+    return name.append(ending);
+}
+
+PendingFile& PictureCopies::begin(const std::string& name) {
+    const std::filesystem::path folder = std::filesystem::path(job_.options.output).parent_path();
+    return *pending_.emplace_back(std::make_unique<PendingFile>((folder / name).string()));
 }
 
 std::vector<unsigned char> PictureCopies::png(MaterialId id) {

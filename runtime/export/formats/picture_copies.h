@@ -3,9 +3,12 @@
 #include <initializer_list>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "compiler/light/sky_picture.h"
 #include "runtime/export/formats.h"
 #include "runtime/system/file.h"
 
@@ -19,6 +22,12 @@ class PictureCopies {
     /// The name of the material's picture, as a file in the same folder says it. Requires that it has one.
     std::string name(MaterialId material);
 
+    /// The material's picture as the model calls it, without folders and ending.
+    static std::string stem(const Material& material);
+
+    /// The name of a sky's picture, written as EXR: of longitude and latitude, its middle towards +z.
+    std::string sky(const SkyPicture& picture);
+
     /// The picture itself. Requires that the material has one.
     std::vector<unsigned char> png(MaterialId material);
 
@@ -28,7 +37,11 @@ class PictureCopies {
     Status commit(std::initializer_list<PendingFile*> files);
 
   private:
+    std::string unused(const std::string& stem, std::string_view ending);
+    PendingFile& begin(const std::string& name);
+
     const ExportJob& job_;
+    std::set<std::string> used_;
     std::map<std::string, std::string> names_; ///< by the model's name of the picture
     std::vector<std::unique_ptr<PendingFile>> pending_;
     Status status_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include <glm/geometric.hpp>
 
@@ -24,6 +25,8 @@ namespace {
 constexpr std::size_t fewest_points = 64;
 /// Bytes that a part takes, about, by itself and in a PointInstancer.
 constexpr std::uint64_t usd_part_bytes = 250, usd_point_bytes = 150;
+/// Lamps without a size are balls in USD.
+constexpr double point_radius = 0.01;
 constexpr std::size_t most_usd_parts = 8'000'000;
 constexpr std::size_t most_usd_looks = 1'000'000;
 /// Most parts wanted in a file that has few, and most wanted for each part of the graph.
@@ -35,13 +38,18 @@ std::string usd_asset(std::string_view name) {
     return fmt::format("{0}{1}{0}", mark, name);
 }
 
-/// A name that USD takes, and no other prim has: numbered.
-std::string usd_name(std::string_view name, std::size_t number) {
+/// A name that USD takes.
+std::string usd_word(std::string_view name) {
     std::string text;
     for (const char c : name.substr(0, 40))
         text += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
     if (text.empty() || std::isdigit(static_cast<unsigned char>(text[0]))) text = "n" + text;
-    return fmt::format("{}_{}", text, number);
+    return text;
+}
+
+/// A name that USD takes, and no other prim has: numbered.
+std::string usd_name(std::string_view name, std::size_t number) {
+    return fmt::format("{}_{}", usd_word(name), number);
 }
 
 std::string vector_text(Vec3 v) {
@@ -65,6 +73,7 @@ class UsdWriter {
     Status write() {
         head();
         std::size_t written = 0;
+        materials();
         file_.text("class \"prototypes\"\n{\n");
         for (const SceneId id : scene_.masters_first) {
             if (!file_.ok()) return file_.status();
@@ -216,9 +225,10 @@ class UsdWriter {
         if (!node.look.colourless)
             file_.print("   color3f[] primvars:displayColor = [{}]\n", vector_text(colour));
         const bool has_material = node.look.material.has_value();
-        if (has_material) file_.print("   rel material:binding = <{}/look>\n", path(id));
+        if (has_material)
+            file_.print("   rel material:binding = <{}/{}>\n", path(id), material_name(*node.look.material));
         file_.text("  }\n");
-        if (has_material) material(id, *node.look.material, node.look);
+        if (has_material) look(id, *node.look.material, node.look);
         file_.text(" }\n");
     }
 
@@ -247,16 +257,38 @@ class UsdWriter {
         file_.text("   uniform token subdivisionScheme = \"none\"\n");
     }
 
-    void material(SceneId id, MaterialId number, const SceneLook& shown) {
-        const Rgb colour = shown.colour();
+    /// The model's materials by their names, each once: looks reference them.
+    void materials() {
+        std::set<MaterialId> used;
+        for (const SceneId id : scene_.masters_first)
+            if (scene_.nodes[id].shape && scene_.nodes[id].look.material)
+                used.insert(*scene_.nodes[id].look.material);
+        file_.text("def Scope \"materials\"\n{\n");
+        for (const MaterialId number : used)
+            material(number);
+        file_.text("}\n\n");
+    }
+
+    /// Names of materials differ in the model, but perhaps not as USD spells them.
+    const std::string& material_name(MaterialId number) {
+        const auto [known, is_new] = material_names_.try_emplace(number);
+        if (!is_new) return known->second;
+        std::string name = usd_word(scene_.materials[number].name);
+        while (!known_names_.insert(name).second)
+            name += '_';
+        return known->second = name;
+    }
+
+    void material(MaterialId number) {
         const Material& material = scene_.materials[number];
         const PbrMaterial look = pbr_of(material);
-        const std::string here = path(id) + "/look";
+        const std::string& name = material_name(number);
+        const std::string here = "/materials/" + name;
         const bool pictured = !material.texture.empty();
-        file_.print("  def Material \"look\"\n  {{\n   token outputs:surface.connect = "
-                    "<{}/surface.outputs:surface>\n   def Shader \"surface\"\n   {{\n",
-                    here);
-        const auto line = [&](const std::string& text) { file_.print("    {}\n", text); };
+        file_.print(" def Material \"{}\"\n {{\n  token outputs:surface.connect = "
+                    "<{}/surface.outputs:surface>\n  def Shader \"surface\"\n  {{\n",
+                    name, here);
+        const auto line = [&](const std::string& text) { file_.print("   {}\n", text); };
         line("uniform token info:id = \"UsdPreviewSurface\"");
         if (pictured) {
             line(fmt::format("color3f inputs:diffuseColor.connect = <{}/picture.outputs:rgb>", here));
@@ -265,33 +297,53 @@ class UsdWriter {
                 line("float inputs:opacityThreshold = 0.5");
             }
         } else {
-            if (shown.colourless)
-                line(fmt::format("color3f inputs:diffuseColor.connect = <{}/colour.outputs:result>", here));
-            else
-                line("color3f inputs:diffuseColor = " + vector_text(colour));
+            line("color3f inputs:diffuseColor = " + vector_text(material.rgb));
             const double opacity = look.opacity - look.transmission; // one of them says something
             if (opacity < 1) line("float inputs:opacity = " + float_text(opacity));
         }
         line("float inputs:metallic = " + float_text(look.metallic));
         line("float inputs:roughness = " + float_text(look.roughness));
         line("float inputs:ior = " + float_text(look.ior));
-        if (look.emission > 0) line("color3f inputs:emissiveColor = " + vector_text(look.emission * colour));
+        if (look.emission > 0)
+            line("color3f inputs:emissiveColor = " + vector_text(look.emission * material.rgb));
         line("token outputs:surface");
-        file_.text("   }\n");
-        if (shown.colourless && !pictured)
-            file_.text("   def Shader \"colour\"\n   {\n    uniform token info:id "
-                       "= \"UsdPrimvarReader_float3\"\n    string inputs:varname = "
-                       "\"displayColor\"\n    float3 outputs:result\n   }\n");
+        file_.text("  }\n");
         if (pictured) {
-            file_.print("   def Shader \"place\"\n   {{\n    uniform token info:id "
-                        "= \"UsdPrimvarReader_float2\"\n    string inputs:varname = \"st\"\n"
-                        "    float2 outputs:result\n   }}\n"
-                        "   def Shader \"picture\"\n   {{\n    uniform token "
-                        "info:id = \"UsdUVTexture\"\n    asset inputs:file = {}\n"
-                        "    token inputs:wrapS = \"repeat\"\n    token inputs:wrapT = "
-                        "\"repeat\"\n    float2 inputs:st.connect = <{}/place.outputs:result>\n"
-                        "    float3 outputs:rgb\n    float outputs:a\n   }}\n",
+            file_.print("  def Shader \"place\"\n  {{\n   uniform token info:id "
+                        "= \"UsdPrimvarReader_float2\"\n   string inputs:varname = \"st\"\n"
+                        "   float2 outputs:result\n  }}\n"
+                        "  def Shader \"picture\"\n  {{\n   uniform token "
+                        "info:id = \"UsdUVTexture\"\n   asset inputs:file = {}\n"
+                        "   token inputs:wrapS = \"repeat\"\n   token inputs:wrapT = "
+                        "\"repeat\"\n   float2 inputs:st.connect = <{}/place.outputs:result>\n"
+                        "   float3 outputs:rgb\n   float outputs:a\n  }}\n",
                         usd_asset(pictures_.name(number)), here);
+        }
+        file_.text(" }\n");
+    }
+
+    /// A material within a prototype: the model's, except for a colour of its own. A prototype binds nothing
+    /// outside itself.
+    void look(SceneId id, MaterialId number, const SceneLook& shown) {
+        const Material& material = scene_.materials[number];
+        const std::string& name = material_name(number);
+        const std::string here = path(id) + "/" + name;
+        file_.print("  def Material \"{0}\" (\n   prepend references = </materials/{0}>\n  )\n  {{\n", name);
+        const Rgb colour = shown.colour();
+        if (material.texture.empty() && (shown.colourless || colour != material.rgb)) {
+            file_.text("   over \"surface\"\n   {\n");
+            if (shown.colourless)
+                file_.print("    color3f inputs:diffuseColor.connect = <{}/colour.outputs:result>\n", here);
+            else
+                file_.print("    color3f inputs:diffuseColor = {}\n", vector_text(colour));
+            const double emission = pbr_of(material).emission;
+            if (emission > 0)
+                file_.print("    color3f inputs:emissiveColor = {}\n", vector_text(emission * colour));
+            file_.text("   }\n");
+            if (shown.colourless)
+                file_.text("   def Shader \"colour\"\n   {\n    uniform token info:id "
+                           "= \"UsdPrimvarReader_float3\"\n    string inputs:varname = "
+                           "\"displayColor\"\n    float3 outputs:result\n   }\n");
         }
         file_.text("  }\n");
     }
@@ -331,14 +383,18 @@ class UsdWriter {
                                                  : "SphereLight";
             file_.print(" def {} \"light_{}\"\n {{\n", kind, number++);
             file_.print("  color3f inputs:color = {}\n", vector_text(light.rgb));
-            if (light.sun) file_.print("  float inputs:angle = {}\n", float_text(light.angle_deg));
+            file_.print("  float inputs:intensity = {}\n", float_text(intensity_of(light)));
+            if (light.sun)
+                file_.print("  float inputs:angle = {}\n  bool inputs:normalize = 1\n",
+                            float_text(light.angle_deg));
             if (light.is_area() && light.round)
                 file_.print("  float inputs:radius = {}\n", float_text(glm::length(light.a)));
             if (light.is_area() && !light.round)
                 file_.print("  float inputs:width = {}\n  float inputs:height = {}\n",
                             float_text(2 * glm::length(light.a)), float_text(2 * glm::length(light.b)));
             if (!light.sun && !light.is_area())
-                file_.text("  float inputs:radius = 0.01\n  bool treatAsPoint = 1\n");
+                file_.print("  float inputs:radius = {}\n  bool treatAsPoint = 1\n",
+                            float_text(point_radius));
             // Light goes along -z.
             Vec3 back(0, 0, 1);
             if (light.sun)
@@ -350,9 +406,35 @@ class UsdWriter {
                 light.is_area() ? glm::normalize(light.a) : glm::normalize(glm::cross(aside, back));
             placed({Mat3(right, glm::cross(back, right), back), light.sun ? Vec3(0.0) : light.location});
         }
-        if (!job_.view.sky_light) return;
-        file_.text(" def DomeLight \"sky\"\n {\n");
-        file_.print("  color3f inputs:color = {}\n }}\n", vector_text(job_.view.ambient_light()));
+        if (job_.view.sky_light) dome(*job_.view.sky_light);
+    }
+
+    /// The intensity by which white paper that faces the light shows its colour, as far as the middle of the
+    /// model. A sun of this schema has the irradiance of its intensity, others a radiance.
+    double intensity_of(const Light& light) const {
+        constexpr double pi = std::numbers::pi;
+        if (light.sun) return pi;
+        const Vec3 middle = scene_.bounds.empty() ? Vec3(0.0) : scene_.bounds.centre();
+        const Vec3 away = light.location - middle;
+        const double sides = glm::length(light.a) * glm::length(light.b);
+        const double area = !light.is_area() ? pi * point_radius * point_radius
+                            : light.round    ? pi * sides
+                                             : 4 * sides;
+        return pi * glm::dot(away, away) / area;
+    }
+
+    /// The middle of a picture lies towards +z in USD, and its right towards -x.
+    void dome(const SkyLight& sky) {
+        file_.text(" def DomeLight \"sky\"\n {\n  float inputs:intensity = 1\n");
+        if (!sky.picture) {
+            file_.print("  color3f inputs:color = {}\n }}\n", vector_text(sky.average()));
+            return;
+        }
+        file_.print("  color3f inputs:color = {}\n  asset inputs:texture:file = {}\n  token "
+                    "inputs:texture:format = \"latlong\"\n",
+                    vector_text(Vec3(sky.brightness)), usd_asset(pictures_.sky(*sky.picture)));
+        const Mat3 picture_from_dome(Vec3(0, 0, -1), Vec3(0, 1, 0), Vec3(1, 0, 0));
+        placed({glm::transpose(sky.picture_from_world) * picture_from_dome, Vec3(0.0)});
     }
 
     const ExportJob& job_;
@@ -361,6 +443,9 @@ class UsdWriter {
     ShapeMeshes meshes_;
     PictureCopies pictures_;
     std::map<const ShapeMesh*, SceneId> mesh_of_;
+    std::map<MaterialId, std::string> material_names_;
+    /// Names that materials may not have: theirs, and of what stands beside them in a prototype.
+    std::set<std::string> known_names_{"mesh"};
     std::size_t prototypes_ = 0, instances_ = 0, points_ = 0;
 };
 

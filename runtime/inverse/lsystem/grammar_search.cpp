@@ -38,7 +38,7 @@ class GrammarSearch {
     }
 
   private:
-    /// The trials of a growth so far.
+    /// The state of a growth so far.
     struct Trial {
         std::uint64_t modules = 0; ///< that it has had in a round
         std::uint32_t start = 0;   ///< the next to be tried

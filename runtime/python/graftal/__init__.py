@@ -208,17 +208,18 @@ class Model:
         return self._model.word(progress)
 
     def plant(self, progress: Optional[Progress] = None) -> np.ndarray:
-        """The modules of that string, a structured array in its order.
+        """The modules of that string and what is drawn, a structured array: `graftal export -o FILE.csv` in memory.
 
-        Fields: name, parent (row, -1 of the first), branches (or follows its parent), order, rank, age (-1: not known),
-        start, end and heading (3 each, in the model's units), length, width, parameters (NaN where it has fewer).
+        Fields: name, parent (row, -1 of the first), branches (or follows its parent), order, rank, part_of (the row of the
+        module in whose place it is drawn, -1: none), organ, material, age (-1: not known), start, end, heading, left and up
+        (3 each, in the model's units), length, width, area, volume (NaN: not known), parameters (NaN where it has fewer).
         """
         parts = self._model.plant(progress)
-        names = np.array(parts["name"], dtype=str) if parts["name"] else np.empty(0, dtype="U1")
-        columns = {"name": names, "parent": parts["parent"], "branches": np.array(parts["branches"], dtype=bool)}
-        columns.update((key, parts[key]) for key in ("order", "rank", "age", "start", "end", "heading"))
-        columns["length"] = np.linalg.norm(parts["end"] - parts["start"], axis=1)
-        columns.update((key, parts[key]) for key in ("width", "parameters"))
+        columns = {
+            key: np.array(value, dtype=bool if key == "branches" else str) if isinstance(value, list) else value
+            for key, value in parts.items()
+        }
+        names = columns["name"]
         table = np.empty(len(names), dtype=[(key, value.dtype, value.shape[1:]) for key, value in columns.items()])
         for key, value in columns.items():
             table[key] = value
@@ -247,7 +248,7 @@ class Model:
         most_bytes: int = 1 << 30,
     ) -> None:
         """Writes a picture (.png, .exr), a scene for POV-Ray (.pov, .inc), or a file for another program (.usda, .gltf, .glb,
-        .obj, .ply, .stl, .svg, .pbrt, .xml).
+        .obj, .ply, .stl, .svg, .pbrt, .xml), or the plant as data (.csv, .json, .mtg).
 
         `engine`, of pictures: "native" or "povray". What follows is for other programs, each for some formats only, as the
         options of `graftal export` are. `unit_mm`: what a unit of the model measures, in millimetres. `most_bytes`: of

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/primitives/mesh_file.h"
+#include "runtime/image_files/image_files.h"
 #include "runtime/image_files/texture_store.h"
 #include "tests/unit/export/exporting.h"
 
@@ -218,6 +219,44 @@ TEST(Formats, CutHolesOnlyWherePicturesHaveThem) {
             EXPECT_EQ(exporting.read(name).find(sign) != std::string::npos, clear) << name;
         }
     }
+}
+
+TEST(Formats, NameMaterialsPicturesAndLight) {
+    Exporting exporting("m.inst",
+                        "light { sun: 1,2,3  angle: 0.5  brightness: 1.5 }\n"
+                        "sky { environment: \"half.exr\"  brightness: 2 }\n"
+                        "material bark { texture: \"bark.png\" }\n"
+                        "material blade { color: 0.2,0.5,0.1  diffuse: 0.6  translucency: 0.4 }\n"
+                        "object m {\n cube material: bark\n cube material: blade  translate: 3, 0, 0\n}\n");
+    Texture picture;
+    picture.width = picture.height = 1;
+    picture.texels = {{{200, 100, 50}, false}};
+    PendingFile file(exporting.path("bark.png"));
+    ASSERT_TRUE(write_texture(file, picture).ok());
+    ASSERT_TRUE(file.commit().ok());
+    Image sky{2, 2, 3, {1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0}};
+    ASSERT_TRUE(write_image(exporting.path("half.exr"), sky, SampleFormat::linear16).ok());
+    ASSERT_TRUE(exporting.to("m.usda")) << exporting.said();
+    const std::string usd = exporting.read("m.usda");
+    EXPECT_EQ(exporting.files(), "bark.png half.exr m.inst m.usda m_bark.png m_sky.exr");
+    for (const char* text :
+         {"def Scope \"materials\"\n{\n def Material \"bark\"", "\n def Material \"blade\"",
+          "references = </materials/bark>", "references = </materials/blade>", "@m_bark.png@",
+          "float inputs:intensity = 3.1415927\n  float inputs:angle = 0.5\n  bool inputs:normalize = 1\n",
+          "color3f inputs:color = (2, 2, 2)\n  asset inputs:texture:file = @m_sky.exr@"})
+        EXPECT_THAT(usd, HasSubstr(text));
+    EXPECT_EQ(usd.find("\"look\""), std::string::npos);
+    Image copy;
+    ASSERT_TRUE(read_image(exporting.path("m_sky.exr"), copy).ok());
+    EXPECT_EQ(copy.pixels.front(), 1);
+    EXPECT_EQ(copy.pixels.back(), 0);
+    ASSERT_TRUE(exporting.to("m.gltf")) << exporting.said();
+    EXPECT_THAT(exporting.read("m.gltf"), testing::ContainsRegex("\"diffuseTransmissionFactor\": 0.4[,\n]"));
+    EXPECT_THAT(exporting.read("m.gltf"), testing::ContainsRegex("\"name\": \"bark\"[^{}]*\\}"));
+    EXPECT_THAT(exporting.said(), HasSubstr("no light of the sky"));
+    ASSERT_TRUE(exporting.to("m.pbrt")) << exporting.said();
+    EXPECT_THAT(exporting.read("m.pbrt"),
+                testing::ContainsRegex("\"infinite\" \"rgb L\" \\[ (1|0\\.99999999)")); // the mean
 }
 
 // Corners of one height were compared with each other, all with all.

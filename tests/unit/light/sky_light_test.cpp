@@ -38,6 +38,21 @@ TEST(SkyLight, AGradientIsThatOfTheHeight) {
     expect_near(sky.on_paper(), Rgb(2.0 / 3 * 0.36 + (1 - 0.36)), 1e-3);
 }
 
+TEST(SkyLight, ItsAverageIsThatOverAllDirections) {
+    SkyLight sky;
+    sky.zenith = Rgb(1.0);
+    sky.horizon = Rgb(0.25);
+    sky.below = Rgb(0.5);
+    // Heights are spread evenly over a sphere: 0.6 of them are on the slope.
+    EXPECT_NEAR(sky.average().r, 0.5 * (0.5 + 0.6 * 0.625 + 0.4), 1e-4);
+    std::vector<SkyPicture::Texel> texels(64 * 32, SkyPicture::Texel{0, 0, 0});
+    std::fill_n(texels.begin(), 64 * 16, SkyPicture::Texel{1, 2, 3});
+    sky.picture = std::make_shared<const SkyPicture>(64, 32, texels);
+    sky.brightness = 2;
+    EXPECT_NEAR(sky.average().r, 1, 1e-6);
+    EXPECT_NEAR(sky.average().b, 3, 1e-6);
+}
+
 TEST(SkyLight, AClearSkyIsFiniteAndBlueAndBrightestAboutTheSun) {
     for (const double turbidity : {2.0, 3.0, 6.0, 10.0})
         for (const double height_deg : {-30.0, 0.0, 1.0, 10.0, 45.0, 90.0}) {

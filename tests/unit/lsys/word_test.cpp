@@ -1,5 +1,8 @@
 // Words as text: published ones, and words that read back as axioms.
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -65,6 +68,68 @@ TEST(LsysWord, SaysWhereThereIsNone) {
     EXPECT_EQ(word_of(limit, 1).text, "F(1)[+(30)A]");
     const std::string doubling = "lsys a {\n  axiom A\n  steps 60\n  A -> AA\n}\n";
     EXPECT_NE(word_of(doubling).messages.find("more than 5000000 modules"), std::string::npos);
+}
+
+// A random model is drawn of parts that are composed once; its word is that of the drawing.
+TEST(LsysWord, OfChanceIsThatWhichIsDrawn) {
+    const std::string random =
+        "  A(n) : n > 0 -> F(n)[+(40)A(n*0.7)]A(n*0.9) : 0.5\n  A(n) -> F(n)A(n*0.8) : 0.3\n"
+        "  A(n) -> F(n)[-(30)%F]F(0.1) : 0.2\n";
+    for (std::uint64_t seed = 1; seed <= 8; ++seed)
+        for (const bool exact : {false, true}) {
+            LowerOptions options;
+            options.seed = seed;
+            options.exact = exact;
+            SourceMap sources;
+            Diagnostics diagnostics;
+            const auto drawn = [&](const std::string& text) {
+                const LoweredText lowered = lower_text("m.lsys", text, options, sources, diagnostics);
+                EXPECT_TRUE(lowered.notes.derivation) << diagnostics.render(sources);
+                return lowered.notes.derivation ? lowered.notes.derivation->segments : "";
+            };
+            const std::string model = "lsys a {\n  width 0.1\n  steps 6\n  axiom A(1)\n" + random + "}\n";
+            const std::string segments = drawn(model);
+            options.in_place = LowerOptions::InPlace::word;
+            const std::string word =
+                lower_text("m.lsys", model, options, sources, diagnostics).notes.word.value_or("");
+            options.in_place = LowerOptions::InPlace::nothing;
+            EXPECT_EQ(std::to_string(std::ranges::count(word, 'F')), segments) << word;
+            EXPECT_EQ(drawn("lsys a {\n  width 0.1\n  steps 0\n  axiom " + word + "\n" + random + "}\n"),
+                      segments);
+        }
+}
+
+// What probabilities leave below 1 leaves the module as it is, parameters and all.
+TEST(LsysWord, KeepsModulesByTheRestOfProbabilities) {
+    constexpr int count = 4000, steps = 2;
+    std::string axiom;
+    for (int i = 0; i < count; ++i)
+        axiom += "A(" + std::to_string(i) + ",3)"; // equal ones would share the choices of a pool
+    for (const bool exact : {false, true}) {
+        LowerOptions options;
+        options.in_place = LowerOptions::InPlace::word;
+        options.exact = exact;
+        SourceMap sources;
+        Diagnostics diagnostics;
+        const std::string model = "lsys a {\n  width 1\n  steps " + std::to_string(steps) + "\n  axiom " +
+                                  axiom + "\n  A(x,y) -> F(x) : 0.2\n  A(x,y) -> G(y) : 0.1\n}\n";
+        const std::string word =
+            lower_text("m.lsys", model, options, sources, diagnostics).notes.word.value_or("");
+        const auto times = [&](const std::string& part) {
+            int found = 0;
+            for (std::size_t at = word.find(part); at != std::string::npos; at = word.find(part, at + 1))
+                ++found;
+            return found;
+        };
+        const int stayed = times(",3)"), replaced = times("F("), other = times("G(3)");
+        EXPECT_EQ(stayed + replaced + other, count);
+        const double stay = std::pow(0.7, steps);
+        const double four_deviations = 4 * std::sqrt(count * stay * (1 - stay));
+        EXPECT_NEAR(stayed, count * stay, four_deviations) << exact;
+        EXPECT_NEAR(replaced, 2 * other, 3 * four_deviations) << exact;
+        EXPECT_NE(diagnostics.render(sources).find("the module stays as it is"), std::string::npos);
+        EXPECT_FALSE(diagnostics.has_errors());
+    }
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/inverse/blocks/coded_picture.h"
+#include "runtime/inverse/blocks/encode.h"
 #include "runtime/system/file.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
@@ -13,8 +14,6 @@ namespace graftal {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double default_tolerance = 8; ///< in levels of 255
 
 BlockTask block_task(const Options& options, ProgressBar& bar) {
     BlockTask task;
@@ -72,7 +71,7 @@ int run_fit_blocks(const Options& options) {
     Compilation compilation;
     const Interruption interruption;
     const std::optional<CodedPicture> coded =
-        code_picture(options.points.target, options.fit.tolerance.value_or(default_tolerance),
+        code_picture(options.points.target, options.fit.tolerance.value_or(BlockCoding().tolerance),
                      block_task(options, bar), interruption.flag(), compilation);
     if (coded) compilation.status = write_text(options.render.output, coded->text);
     bar.clear();

@@ -2,7 +2,6 @@
 
 #include "runtime/export/export_model.h"
 #include "runtime/export/plant_files.h"
-#include "runtime/system/file.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/options/export.h"
@@ -16,20 +15,12 @@ namespace {
 /// The modules of an L-system as data.
 int run_plant(const Options& options, const PlantFormat& format) {
     Compilation compilation;
-    StageOptions compile = inspecting(options, true);
-    compile.lower.in_place = LowerOptions::InPlace::plant;
-    compile.lower.may_be_orbit = true;
     CommandSession session(options, options.operands.front());
-    const std::shared_ptr<const LoweredModel> lowered = session.lowered(compile, compilation);
-    const Plant* const plant = lowered ? lowered->notes.plant.get() : nullptr;
-    if (lowered && !plant && compilation.status.ok() && !compilation.diagnostics.has_errors())
-        compilation.diagnostics.error(
-            Span(), fmt::format("only L-systems have modules, which a {} file holds", format.extension));
-    if (plant) compilation.status = write_text(options.render.output, format.text(*plant));
+    const std::optional<std::string> written =
+        export_plant(session, inspecting(options, true), format, export_options(options).file, compilation);
     const int status = conclude(options, compilation);
-    if (plant && status == exit_done && !options.quiet)
-        say(fmt::format("{}: {} modules after {} steps\n", options.render.output, plant->modules.size(),
-                        plant->steps));
+    if (written && status == exit_done && !options.quiet)
+        say(fmt::format("{}: {}\n", options.render.output, *written));
     return status;
 }
 

@@ -24,6 +24,7 @@ FindOptions find_options(const Options& options) {
     find.search.rules.similar = options.fit.similar;
     find.search.seconds = options.render.work_seconds.value_or(find.search.seconds);
     find.search.seed = options.render.compile.lower.seed.value_or(find.search.seed);
+    find.in_colour = options.fit.in_colour;
     find.start = options.fit.start;
     find.compile = inspecting(options, true);
     find.made_by = options.render.metadata.description;
@@ -35,18 +36,25 @@ Json fit_json(const Options& options, const FoundModel& found) {
     Json maps = Json::array();
     for (const PlaneMap& m : found.maps)
         maps.push_back({m.a, m.b, m.c, m.d, m.e, m.f});
-    return {{"target", options.points.target},
-            {"model", options.render.output},
-            {"target_cells", found.cells},
-            {"cell_pixels", found.cell},
-            {"maps", std::move(maps)},
-            {"iou", found.agreement.strict},
-            {"iou_within_a_cell", found.agreement.tolerant},
-            {"chamfer_cells", found.agreement.chamfer},
-            {"contractivity", found.contractivity},
-            {"epsilon_cells", found.epsilon},
-            {"bound_cells", found.bound},
-            {"work_seconds", found.seconds}};
+    Json json = {{"target", options.points.target},
+                 {"model", options.render.output},
+                 {"target_cells", found.cells},
+                 {"cell_pixels", found.cell},
+                 {"maps", std::move(maps)},
+                 {"iou", found.agreement.strict},
+                 {"iou_within_a_cell", found.agreement.tolerant},
+                 {"chamfer_cells", found.agreement.chamfer},
+                 {"contractivity", found.contractivity},
+                 {"epsilon_cells", found.epsilon},
+                 {"bound_cells", found.bound},
+                 {"work_seconds", found.seconds}};
+    if (!found.colours) return json;
+    Json tints = Json::array();
+    for (const Rgb& rgb : found.colours->of_map)
+        tints.push_back({rgb.r, rgb.g, rgb.b, found.colours->alpha});
+    json["tints"] = std::move(tints);
+    json["colour_rms_255"] = found.colours->rms_255;
+    return json;
 }
 
 std::string fit_text(const Options& options, const FoundModel& found) {
@@ -55,11 +63,15 @@ std::string fit_text(const Options& options, const FoundModel& found) {
         "agreement      IoU {:.3f}, within one cell {:.3f}; Chamfer distance {:.2f} cells\n"
         "target         {} cells in {}x{}: those with pixels {}; a cell is {:g} pixel{} wide\n"
         "collage        epsilon {:.2f} cells; the attractor is at most {:.1f} cells from the target\n"
-        "work           {:.1f} s, counted\n",
+        "{}work           {:.1f} s, counted\n",
         options.render.output, found.maps.size(), found.contractivity, found.agreement.strict,
         found.agreement.tolerant, found.agreement.chamfer, found.cells, found.width, found.height,
         criterion_text(options.points.criterion, found.by_alpha), found.cell, found.cell == 1 ? "" : "s",
-        found.epsilon, found.bound, found.seconds);
+        found.epsilon, found.bound,
+        found.colours ? fmt::format("colours        {:.1f} of 255 from the target's, root mean square\n",
+                                    found.colours->rms_255)
+                      : "",
+        found.seconds);
 }
 
 Json lsystem_json(const Options& options, const FoundLsystem& found) {

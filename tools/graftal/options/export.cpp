@@ -42,7 +42,9 @@ std::string formats_text() {
 void add_export(CLI::App& app, Options& options) {
     ExportOptions& file = options.file;
     add_model(app, options);
-    app.add_option("-o,--output", options.render.output, "File to write, " + export_endings())
+    app.add_option("-o,--output", options.render.output,
+                   fmt::format("File to write, {}; the modules of an L-system as data: {}", export_endings(),
+                               plant_endings()))
         ->type_name("FILE");
     add_value(app, "--limit", "BYTES",
               "Largest file; suffixes K M G (default 1G). If the whole model takes more, graftal leaves out "
@@ -95,10 +97,18 @@ void add_export(CLI::App& app, Options& options) {
 
 std::string complete_export(Options& options) {
     if (options.render.output.empty())
-        return fmt::format("name the file with '-o FILE'; its ending says the format: {}", export_endings());
+        return fmt::format("name the file with '-o FILE'; its ending says the format: {}; {}",
+                           export_endings(), plant_endings());
     const ExportFormat* const format = find_export_format(options.render.output);
-    if (!format && find_plant_format(options.render.output)) return {};
-    if (!format) return fmt::format("'{}': the name must end in {}", options.render.output, export_endings());
+    if (!format) {
+        const PlantFormat* const plant = find_plant_format(options.render.output);
+        if (!plant)
+            return fmt::format("'{}': the name must end in {}; {}", options.render.output, export_endings(),
+                               plant_endings());
+        const bool finds_parts = options.error_asked || options.render.compile.view.zoom.active();
+        const std::string vain = vain_plant_wish(*plant, options.file, finds_parts);
+        return vain.empty() ? "" : "--" + vain;
+    }
     if (const ExportWish* const wish = find_vain_wish(*format, options.file))
         return fmt::format("--{} is for {}, not for {}", wish->option, endings_with(wish->has),
                            format->extension);

@@ -194,8 +194,8 @@ void add_fit_options(CLI::App& app, Options& options) {
                std::string(target_help) + "; or a drawing (.svg, .csv, .txt, .lsys), for an L-system");
     app.add_option(
            "-o,--output", options.render.output,
-           "Model to write: .rifs, .lsys for a drawing, or .pifs with --blocks (default: TARGET's name + "
-           "that, in this folder)")
+           "Model to write: .rifs, .lsys for a drawing, or .pifs with --blocks (default: TARGET's name, in "
+           "this folder)")
         ->type_name("FILE");
     add_value(
         app, "--maps", "N", "Most maps of the system (default 8)", "a whole number from 2 to 24",
@@ -203,6 +203,8 @@ void add_fit_options(CLI::App& app, Options& options) {
         [&fit](std::uint64_t maps) { fit.most_maps = static_cast<std::size_t>(maps); });
     app.add_flag("--similar", fit.similar,
                  "Only maps that keep angles: turns, mirrors and one factor of size");
+    app.add_flag("--color", fit.in_colour,
+                 "Give each map a tint, so that the model has the target's colours");
     app.add_option(
            "--start", fit.start,
            "Model to begin with: a flat iterated function system in the frame in which graftal writes "
@@ -212,19 +214,15 @@ void add_fit_options(CLI::App& app, Options& options) {
         "--blocks", fit.blocks,
         "Code the whole picture, grey or in colour, by blocks that are copies of larger ones: a .pifs "
         "file, which 'graftal render' decodes at any size");
-    for (const char* const other : {"--threshold", "--light", "--maps", "--similar", "--start"})
+    for (const char* const other : {"--threshold", "--light", "--maps", "--similar", "--color", "--start"})
         blocks->excludes(other);
-    add_value(
-        app, "--tolerance", "T",
-        "With --blocks: error that photographs then have, about, root mean square in levels of 255; less "
-        "makes larger files (default 8). Of drawings: ends of lines meet where they are no farther apart, as "
-        "a share of the shortest line (default 0.01)",
-        "a number from 0 to 255",
-        [](const std::string& text) {
-            const std::optional<double> levels = parse_at_least(text, 0);
-            return levels && *levels <= 255 ? levels : std::nullopt;
-        },
-        [&fit](double levels) { fit.tolerance = levels; });
+    add_value(app, "--tolerance", "X",
+              "With --blocks: error that photographs then have, about, root mean square in levels of 255; "
+              "less makes "
+              "larger files (default 8). Of a drawing: ends of lines meet where they are no farther apart, "
+              "as a share of "
+              "the shortest line (default 0.01)",
+              "a number", parse_number, [&fit](double tolerance) { fit.tolerance = tolerance; });
     add_work(app, options,
              "Limit of the search, roughly in seconds of one processor, by counted work (default 30)");
     app.add_flag("--json", options.json, "Print one JSON object on standard output");
@@ -244,23 +242,25 @@ void add_fit_options(CLI::App& app, Options& options) {
 
 std::string complete_fit(Options& options) {
     std::string& output = options.render.output;
-    const bool draws = is_drawing_name(options.points.target);
-    const char* const ending = options.fit.blocks ? ".pifs" : draws ? ".lsys" : ".rifs";
+    const FitSettings& fit = options.fit;
+    const bool draws = is_drawing_name(options.points.target) && !fit.blocks;
+    const std::string ending = fit.blocks ? ".pifs" : draws ? ".lsys" : ".rifs";
     if (output.empty()) output = model_stem(options.points.target) + ending;
     if (output != "-" && !output.ends_with(ending))
         return fmt::format("'{}': the name of the model must end in {}", output, ending);
-    if (draws && !options.fit.blocks) {
-        if (output == options.points.target)
-            return fmt::format("'{}' is the drawing: name another file by -o", output);
-        if (options.fit.similar || !options.fit.start.empty() ||
-            options.fit.most_maps != FitSettings().most_maps)
-            return "--maps, --similar and --start are for pictures, and not for drawings";
-        const double tolerance = options.fit.tolerance.value_or(0.01);
-        if (tolerance < 1e-6 || tolerance > 0.2)
-            return "--tolerance: for a drawing, it is a number from 1e-6 to 0.2";
-    } else if (options.fit.tolerance && !options.fit.blocks) {
-        return "--tolerance needs --blocks, or a drawing: .svg, .csv, .txt or .lsys";
+    if (output == options.points.target)
+        return fmt::format("'{}' is the drawing: name another file by -o", output);
+    if (fit.tolerance) {
+        if (!draws && !fit.blocks)
+            return "--tolerance is for drawings (.svg, .csv, .txt and .lsys), and for --blocks";
+        const double least = draws ? 1e-6 : 0, most = draws ? 0.2 : 255;
+        if (!(*fit.tolerance >= least && *fit.tolerance <= most))
+            return fmt::format("--tolerance: '{}' is not a number from {} to {}", shortest(*fit.tolerance),
+                               shortest(least), shortest(most));
     }
+    if (draws &&
+        (fit.similar || fit.in_colour || !fit.start.empty() || fit.most_maps != FitSettings().most_maps))
+        return "--maps, --similar, --color and --start are for pictures, and not for drawings";
     if (output == "-" && options.json)
         return "--json prints where '-o -' writes the model: leave one of them out";
     return {};

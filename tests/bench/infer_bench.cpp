@@ -381,7 +381,7 @@ void study_scene(const std::string& path, double seconds) {
         Compilation compilation;
         if (!more)
             if (const auto lowered = session.lowered(options, compilation); lowered && lowered->notes.plant)
-                steps = lowered->notes.plant->steps;
+                steps = static_cast<unsigned>(lowered->notes.plant->steps);
         options.lower.steps = steps + more;
         return model_strokes(session, options, compilation);
     };

@@ -68,6 +68,7 @@ std::optional<Strokes> model_strokes(Session& session, StageOptions options, Com
     if (!lowered || !lowered->notes.plant) return std::nullopt;
     Strokes strokes;
     for (const PlantModule& module : lowered->notes.plant->modules) {
+        if (module.organ != Organ::segment) continue;
         const Stroke stroke{{module.start.x, module.start.y}, {module.end.x, module.end.y}};
         if (std::abs(module.start.z) > 1e-9 || std::abs(module.end.z) > 1e-9) {
             compilation.diagnostics.error({}, "this model draws in space, and not in a plane")

@@ -248,7 +248,7 @@ std::string complete_fit(Options& options) {
     if (output.empty()) output = model_stem(options.points.target) + ending;
     if (output != "-" && !output.ends_with(ending))
         return fmt::format("'{}': the name of the model must end in {}", output, ending);
-    if (output == options.points.target)
+    if (draws && output == options.points.target)
         return fmt::format("'{}' is the drawing: name another file by -o", output);
     if (fit.tolerance) {
         if (!draws && !fit.blocks)

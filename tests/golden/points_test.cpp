@@ -46,7 +46,7 @@ TEST_F(CommandLine, PointsUsage) {
         {"fit a.lsys", "'a.lsys' is the drawing: name another file by -o"},
         {"fit a.svg --maps 3", "--maps, --similar, --color and --start are for pictures"},
         {"fit a.png --tolerance 0.1", "--tolerance is for drawings"},
-        {"fit a.svg --tolerance 0.5", "--tolerance: '0.5' is not a number from 1e-6 to 0.2"},
+        {"fit a.svg --tolerance 0.5", "--tolerance: '0.5' is not a number from 1e-06 to 0.2"},
         {"fit a.png --maps 1", "--maps: '1' is not a whole number from 2 to 24"},
     };
     for (const auto& [arguments, message] : cases) {

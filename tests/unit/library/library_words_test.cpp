@@ -17,9 +17,9 @@ namespace {
 /// the command line only.
 TEST(LibraryWords, AreKnownForEveryOptionThatMessagesName) {
     static const std::set<std::string> of_commands = {
-        "--aovs",  "--at",    "--card",        "--boxes",     "--denoise",     "--device",
-        "--light", "--maps",  "--preset",      "--threshold", "--transparent", "--flatten",
-        "--keep",  "--noise", "--progressive", "--tile",      "--visible-only"};
+        "--aovs",    "--at",        "--card",  "--boxes",       "--denoise", "--device",      "--blocks",
+        "--exact",   "--tolerance", "--light", "--maps",        "--preset",  "--threshold",   "--transparent",
+        "--flatten", "--keep",      "--noise", "--progressive", "--tile",    "--visible-only"};
     static const std::regex literal("\"([^\"\\\\]|\\\\.)*\""), option("--[a-z][a-z-]*");
     std::set<std::string> seen;
     for (const char* const folder : {"/compiler", "/runtime"}) {

@@ -506,7 +506,7 @@ Status write_gltf_file(const ExportJob& job, ExportReport& report, bool binary) 
         resolve_looks(job.scene, {most_looks}, job.model, job.diagnostics);
     job.too_large = !scene;
     if (!scene) return {};
-    if (job.view.sky_light)
+    if (job.view.shows_sky_light)
         job.diagnostics.note(job.model, "glTF has no light of the sky: graftal leaves it out of the file");
     GltfWriter writer(job, *scene);
     Status made = writer.make();

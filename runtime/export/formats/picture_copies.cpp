@@ -27,7 +27,7 @@ std::string PictureCopies::name(MaterialId id) {
 }
 
 std::string PictureCopies::sky(const SkyPicture& picture) {
-    const std::string name = unused("sky", ".exr");
+    std::string name = unused("sky", ".exr");
     Image image{picture.width(), picture.height(), 3, {}};
     for (const SkyPicture::Texel& texel : picture.texels())
         image.pixels.insert(image.pixels.end(), texel.begin(), texel.end());

@@ -192,7 +192,8 @@ std::vector<LsysGrowth> growths(std::uint64_t segments, bool rich, bool sized, W
     if (rich && !sized) add_three_edges(table);
     if (!rich && !sized) add_edge_systems(table);
     if (!rich && !sized) add_mixed_systems(table);
-    for (std::uint8_t straight = 1; straight <= (sized ? 1 : 3); ++straight)
+    const std::uint8_t most_straight = sized ? 1 : 3;
+    for (std::uint8_t straight = 1; straight <= most_straight; ++straight)
         if (rich)
             add_three_nodes(table, straight);
         else

@@ -135,10 +135,11 @@ class StrokeGraphBuilder {
         constexpr std::size_t most_at_a_place = 6;
         std::vector<std::vector<std::uint32_t>> leaving(graph.places.size());
         for (std::uint32_t i = 0; i < strokes_.size(); ++i)
-            if (leaving[ends_[2 * i]].size() < most_at_a_place) leaving[ends_[2 * i]].push_back(i);
+            if (leaving[ends_[std::size_t{2} * i]].size() < most_at_a_place)
+                leaving[ends_[std::size_t{2} * i]].push_back(i);
         std::vector<double> turns;
         for (std::uint32_t i = 0; i < strokes_.size(); ++i)
-            for (const std::uint32_t next : leaving[ends_[2 * i + 1]])
+            for (const std::uint32_t next : leaving[ends_[std::size_t{2} * i + 1]])
                 turns.push_back(std::abs(wrapped_deg(degrees_[next] - degrees_[i])));
         return turns;
     }
@@ -193,11 +194,11 @@ class StrokeGraphBuilder {
         constexpr double most_error_deg = 0.02;
         std::vector<std::vector<std::uint32_t>> leaving(graph.places.size());
         for (std::uint32_t i = 0; i < strokes_.size(); ++i)
-            leaving[ends_[2 * i]].push_back(i);
+            leaving[ends_[std::size_t{2} * i]].push_back(i);
         std::vector<bool> seen(strokes_.size());
         followed_.assign(strokes_.size(), 0);
         const auto next_to = [&](std::uint32_t at, const auto& next) {
-            for (const std::uint32_t place : {ends_[2 * at], ends_[2 * at + 1]})
+            for (const std::uint32_t place : {ends_[std::size_t{2} * at], ends_[std::size_t{2} * at + 1]})
                 for (const std::uint32_t other : leaving[place]) {
                     const double turn = wrapped_deg(degrees_[other] - degrees_[at]);
                     const auto units = static_cast<std::int32_t>(std::lround(turn / angle_deg));
@@ -273,7 +274,8 @@ class StrokeGraphBuilder {
         std::vector<Link> links;
         for (std::uint32_t i = 0; i < strokes_.size(); ++i) {
             const std::int32_t direction = followed_.empty() ? grid.units(degrees_[i]) : followed_[i];
-            links.push_back({ends_[2 * i], ends_[2 * i + 1], direction, classes[i]});
+            links.push_back(
+                {ends_[std::size_t{2} * i], ends_[std::size_t{2} * i + 1], direction, classes[i]});
         }
         turn_by_mean(graph, links);
         std::ranges::sort(links, {}, [](const Link& link) {
@@ -342,9 +344,9 @@ class StrokeGraphBuilder {
         std::vector<std::int64_t> surplus(graph.places.size());
         std::vector<std::vector<std::uint32_t>> before(graph.places.size());
         for (std::size_t i = 0; i < strokes_.size(); ++i) {
-            ++surplus[ends_[2 * i]];
-            --surplus[ends_[2 * i + 1]];
-            before[ends_[2 * i + 1]].push_back(ends_[2 * i]);
+            ++surplus[ends_[std::size_t{2} * i]];
+            --surplus[ends_[std::size_t{2} * i + 1]];
+            before[ends_[std::size_t{2} * i + 1]].push_back(ends_[std::size_t{2} * i]);
         }
         std::int64_t sum = 0;
         for (const std::int64_t each : surplus)

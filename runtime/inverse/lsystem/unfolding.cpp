@@ -37,7 +37,7 @@ std::optional<FoundGrammar> Unfolding::find(const LsysGrowth& growth, std::uint3
         rule.gaps.emplace_back();
     rules_.back().end_turn = no_turn;
     State state;
-    state.frames = {{static_cast<std::int8_t>(growth.letters), static_cast<std::int8_t>(growth.steps + 1)}};
+    state.frames = {{static_cast<std::int16_t>(growth.letters), static_cast<std::int16_t>(growth.steps + 1)}};
     state.heading.count = 1;
     state.heading.terms[0] = {first_turn, 1};
     state.place = start;
@@ -112,7 +112,7 @@ bool Unfolding::meet_item(State& state, const Item& item) {
         return close_branch(state);
     } else {
         turn_by(state.heading, item.turn, 1);
-        const auto level = static_cast<std::int8_t>(frame.level - 1);
+        const auto level = static_cast<std::int16_t>(frame.level - 1);
         state.frames.push_back({item.letter, level});
     }
     return true;
@@ -137,7 +137,7 @@ bool Unfolding::meet_token(State& state) {
         if (graph_.sized())
             state.length = static_cast<std::uint8_t>(static_cast<int>(growth_.steps) - frame.level);
     } else {
-        const auto level = static_cast<std::int8_t>(frame.level - 1);
+        const auto level = static_cast<std::int16_t>(frame.level - 1);
         state.frames.push_back({token.letter, level});
     }
     return true;
@@ -215,7 +215,7 @@ bool Unfolding::guess_item(const State& state) {
         const Number turn = is_first ? no_turn : new_turn();
         for (std::size_t letter = growth_.drawn; letter < growth_.letters; ++letter)
             if (may_count(number, letter) && (!is_first || letter == growth_.axiom_letter) &&
-                try_item(state, {Mark::letter, static_cast<std::int8_t>(letter), turn}))
+                try_item(state, {Mark::letter, static_cast<std::int16_t>(letter), turn}))
                 return true;
         if (!is_first) turns_.pop_back();
     }
@@ -266,8 +266,8 @@ bool Unfolding::guess_token(const State& state) {
     if (left > 0 && can_draw) {
         const bool is_fixed = rule.drawn == 0 && fixes_turn(number);
         const Number turn = is_fixed ? no_turn : new_turn();
-        std::int8_t letter = growth_.drawn == 1 ? std::int8_t{0} : any_letter;
-        if (is_axiom(frame.rule) && rule.drawn == 0) letter = static_cast<std::int8_t>(growth_.axiom_letter);
+        std::int16_t letter = growth_.drawn == 1 ? std::int16_t{0} : any_letter;
+        if (is_axiom(frame.rule) && rule.drawn == 0) letter = static_cast<std::int16_t>(growth_.axiom_letter);
         if (try_token(state, {Mark::letter, letter, turn})) return true;
         if (!is_fixed) turns_.pop_back();
     }
@@ -290,7 +290,7 @@ bool Unfolding::guess_letter(const State& state) {
     const auto number = static_cast<std::size_t>(frame.rule);
     for (std::size_t letter = 0; letter < growth_.drawn; ++letter) {
         if (!may_count(number, letter)) continue;
-        rules_[number].tokens[frame.token].letter = static_cast<std::int8_t>(letter);
+        rules_[number].tokens[frame.token].letter = static_cast<std::int16_t>(letter);
         ++rules_[number].counts[letter];
         if (unfold(state)) return true;
         --rules_[number].counts[letter];

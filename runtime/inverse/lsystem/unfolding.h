@@ -65,12 +65,12 @@ class Unfolding {
     };
 
     enum class Mark : std::uint8_t { letter, open, close };
-    static constexpr std::int8_t any_letter = -1;
+    static constexpr std::int16_t any_letter = -1;
 
     /// A letter that draws nothing, or a bracket around such letters.
     struct Item {
         Mark mark = Mark::letter;
-        std::int8_t letter = 0;
+        std::int16_t letter = 0;
         Number turn = no_turn; ///< before it
     };
     /// The items between two tokens.
@@ -82,7 +82,7 @@ class Unfolding {
     /// A letter that draws, or a bracket around such letters.
     struct Token {
         Mark mark = Mark::letter;
-        std::int8_t letter = any_letter;
+        std::int16_t letter = any_letter;
         Number turn = no_turn; ///< from the token before, as long as items draw nothing
     };
     struct Rule {
@@ -95,7 +95,7 @@ class Unfolding {
     };
 
     struct Frame {
-        std::int8_t rule = 0, level = 0;
+        std::int16_t rule = 0, level = 0;
         std::uint16_t token = 0, item = 0;
     };
     struct Branch {
@@ -138,7 +138,7 @@ class Unfolding {
     std::vector<std::int32_t> turns_in_order() const;
     bool fixes_turn(std::size_t rule) const;
     bool is_hidden(std::size_t letter) const { return letter >= growth_.drawn; }
-    bool is_axiom(std::int8_t rule) const { return static_cast<std::size_t>(rule) == growth_.letters; }
+    bool is_axiom(std::int16_t rule) const { return static_cast<std::size_t>(rule) == growth_.letters; }
     bool has_hidden() const { return growth_.letters > growth_.drawn; }
     bool may_count(std::size_t rule, std::size_t letter) const;
     void restore(std::size_t taken);

@@ -177,8 +177,8 @@ Film lower_film(const SceneFields& fields) {
     return film;
 }
 
-void check_sky(const std::vector<SceneStatement>& statements, const SceneSettings& settings,
-               Diagnostics& diagnostics) {
+void check_suns(const std::vector<SceneStatement>& statements, const SceneSettings& settings,
+                Diagnostics& diagnostics) {
     using Kind = SceneStatement::Kind;
     const bool of_sky = settings.sky && settings.sky->turbidity,
                of_haze = settings.haze && settings.haze->sun > 0;

@@ -15,8 +15,8 @@ SkySetting lower_sky(const SceneFields& fields, Lowering& lowering);
 HazeSetting lower_haze(const SceneFields& fields);
 Film lower_film(const SceneFields& fields);
 
-/// Reports a clear sky that has no sun to stand about.
-void check_sky(const std::vector<SceneStatement>& statements, const SceneSettings& settings,
-               Diagnostics& diagnostics);
+/// Reports a clear sky that has no sun to stand about, and haze that has none to show.
+void check_suns(const std::vector<SceneStatement>& statements, const SceneSettings& settings,
+                Diagnostics& diagnostics);
 
 } // namespace graftal

@@ -360,7 +360,7 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
             break;
         }
     }
-    check_sky(statements, graph.settings, lowering.diagnostics);
+    check_suns(statements, graph.settings, lowering.diagnostics);
     if (const std::optional<double> steps = set_value("steps", lets, lowering)) {
         if (are_steps(*steps))
             graph.settings.steps = static_cast<unsigned>(*steps);

@@ -24,7 +24,7 @@ class ColouredPoints {
         const auto width = static_cast<std::size_t>(target.width());
         std::vector<std::uint32_t> point_in(width * static_cast<std::size_t>(target.height()), no_point);
         std::vector<Vec2> queue(1, fixed_point(maps.front()));
-        steps_.push_back({0, 0, point_in.size()});
+        steps_.push_back({0, 0});
         for (std::uint32_t i = 0; i < queue.size(); ++i)
             for (std::uint32_t m = 0; m < maps_; ++m) {
                 const Vec2 q = maps[m](queue[i]);
@@ -34,7 +34,7 @@ class ColouredPoints {
                 if (point_in[cell] != no_point) continue;
                 point_in[cell] = static_cast<std::uint32_t>(queue.size());
                 queue.push_back(q);
-                steps_.push_back({i, m, cell});
+                steps_.push_back({i, m});
             }
         for (std::size_t k = 0; k < target.points().size(); ++k) {
             const Vec2 p = target.points()[k];
@@ -80,7 +80,6 @@ class ColouredPoints {
   private:
     struct Step {
         std::uint32_t from, map; ///< the point that this map took here
-        std::size_t cell;
     };
     struct Seen {
         std::uint32_t point;

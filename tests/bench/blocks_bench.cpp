@@ -50,7 +50,8 @@ std::vector<double> luma(const Image& image) {
     return luma;
 }
 
-/// By a Gaussian of 11 by 11 pixels with a deviation of 1.5; only where it lies inside the picture.
+/// The mean is weighed by a Gaussian of 11 by 11 pixels with a deviation of 1.5; only where it lies inside
+/// the picture.
 std::vector<double> blurred(const std::vector<double>& values, int width, int height) {
     constexpr int reach = 5;
     double weights[2 * reach + 1], sum = 0;

@@ -45,7 +45,7 @@ std::optional<CodedPicture> code_picture(const std::string& path, double toleran
                                          const CancelFlag& cancel, Compilation& compilation);
 
 /// The attractor of a .pifs file, in the size that is asked for, or in that of the picture that was coded.
-/// As code_picture().
+/// Refusals and errors are those of code_picture().
 std::optional<Image> draw_pifs(const std::string& path, std::optional<ImageSize> size, const BlockTask& task,
                                const CancelFlag& cancel, Compilation& compilation);
 

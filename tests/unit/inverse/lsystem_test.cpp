@@ -22,7 +22,7 @@ class FoundLsystemTest : public ::testing::Test {
 
     std::string path(const std::string& name) const { return directory_.path() + "/" + name; }
 
-    /// What an L-system draws.
+    /// The strokes that an L-system draws.
     static Strokes drawing(const std::string& text, std::optional<unsigned> steps = std::nullopt) {
         Session session("m.lsys", text);
         StageOptions options;

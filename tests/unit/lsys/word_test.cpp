@@ -99,7 +99,7 @@ TEST(LsysWord, OfChanceIsThatWhichIsDrawn) {
         }
 }
 
-// What probabilities leave below 1 leaves the module as it is, parameters and all.
+// Probabilities below 1 leave a rest, in which the module stays as it is, parameters and all.
 TEST(LsysWord, KeepsModulesByTheRestOfProbabilities) {
     constexpr int count = 4000, steps = 2;
     std::string axiom;

@@ -98,6 +98,22 @@ std::string lsystem_report(const Options& options, const FoundLsystem& found) {
                        found.seconds);
 }
 
+/// Writes what was found, and tells of it.
+template<typename Found>
+int finish(const Options& options, const std::optional<Found>& found,
+           Json (*json)(const Options&, const Found&), std::string (*report)(const Options&, const Found&),
+           const Interruption& interruption, Compilation& compilation) {
+    if (found) compilation.status = write_text(options.render.output, found->text);
+    const int status = conclude(options, compilation, interruption.signal());
+    if (!found || !compilation.status.ok()) return status;
+    if (options.json) {
+        const int printed = print_output(json(options, *found).dump(2) + "\n");
+        return status == exit_done ? printed : status;
+    }
+    if (!options.quiet) say(report(options, *found));
+    return status;
+}
+
 int run_fit_lsystem(const Options& options) {
     ProgressBar bar(!options.quiet);
     FindLsystemOptions find;
@@ -112,16 +128,8 @@ int run_fit_lsystem(const Options& options) {
     Compilation compilation;
     const Interruption interruption;
     const std::optional<FoundLsystem> found = find_lsystem(find, interruption.flag(), compilation);
-    if (found) compilation.status = write_text(options.render.output, found->text);
     bar.clear();
-    const int status = conclude(options, compilation, interruption.signal());
-    if (!found || !compilation.status.ok()) return status;
-    if (options.json) {
-        const int printed = print_output(lsystem_json(options, *found).dump(2) + "\n");
-        return status == exit_done ? printed : status;
-    }
-    if (!options.quiet) say(lsystem_report(options, *found));
-    return status;
+    return finish(options, found, lsystem_json, lsystem_report, interruption, compilation);
 }
 
 } // namespace
@@ -138,16 +146,8 @@ int run_fit(const Options& options) {
     Compilation compilation;
     const Interruption interruption;
     const std::optional<FoundModel> found = find_model(find, interruption.flag(), compilation);
-    if (found) compilation.status = write_text(options.render.output, found->text);
     bar.clear();
-    const int status = conclude(options, compilation, interruption.signal());
-    if (!found || !compilation.status.ok()) return status;
-    if (options.json) {
-        const int printed = print_output(fit_json(options, *found).dump(2) + "\n");
-        return status == exit_done ? printed : status;
-    }
-    if (!options.quiet) say(fit_text(options, *found));
-    return status;
+    return finish(options, found, fit_json, fit_text, interruption, compilation);
 }
 
 } // namespace graftal

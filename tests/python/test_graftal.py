@@ -161,7 +161,7 @@ class Package(unittest.TestCase):
             self.assertGreater(len(np.unique(drawn)), 10)
 
     def test_aovs_show_what_is_met(self):
-        model = graftal.inst("camera { location: 0,0,5 look_at: 0,0,0 orthographic width: 4 }\n"
+        model = graftal.inst("camera { location: 0,0,5 look_at: 0,0,0 orthographic width: 4 }\nlight { sun: 1,2,3 }\n"
                              "material red { color: 0.8, 0.2, 0.1 }\nobject m { instance: sphere material: red }\n")
         seen, names = model.aovs((64, 48), "draft")
         x, y = np.meshgrid((np.arange(64) + 0.5) / 16 - 2, 1.5 - (np.arange(48) + 0.5) / 16)

@@ -95,12 +95,12 @@ Status GpuPicture::read_aovs(const FlatModel& model, AovPicture& aovs, double& l
     if (Status status = read_sums(sums); !status.ok()) return status;
     const float whole = samples_.lattice > 0 ? static_cast<float>(samples_.lattice * samples_.lattice)
                                              : static_cast<float>(done_);
-    aovs.assign(window_.pixels(), {});
+    aovs = AovPicture(window_.pixels());
     lost = 0;
-    for (std::size_t i = 0; i < aovs.size(); ++i) {
+    for (std::size_t i = 0; i < aovs.pixels.size(); ++i) {
         const glm::vec4 sum = sums[4 * i], normals = sums[4 * i + 1], albedos = sums[4 * i + 2],
                         nearest = sums[4 * i + 3];
-        AovPixel& pixel = aovs[i];
+        AovPixel& pixel = aovs.pixels[i];
         const std::uint32_t node =
             static_cast<std::uint32_t>(nearest.x) << 16 | static_cast<std::uint32_t>(nearest.y);
         pixel.node = node < model.source.size() ? model.source[node] : node;

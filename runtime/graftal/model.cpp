@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,6 +25,7 @@
 #include "runtime/plants/measures_report.h"
 #include "runtime/plants/plant_of_model.h"
 #include "runtime/points/draw_points.h"
+#include "runtime/render/aov_channels.h"
 #include "runtime/render/file_film.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/render/render.h"
@@ -99,6 +101,32 @@ class TileFilm final : public PictureFilm {
   private:
     const OnTile& listener_;
     graftal::Tile window_;
+};
+
+/// Keeps the light and the AOVs of the last pass.
+class ChannelFilm final : public PictureFilm {
+  public:
+    void begin(const PictureShape& shape) override { shape_.emplace(shape); }
+    void tile(const graftal::Tile&, const Image&, int) override {}
+    Status end(int, const Image& picture, const AovPicture* aovs) override {
+        const MoreChannels more = aov_channels(*aovs, shape_->cut, shape_->view);
+        channels_ = {picture.width, picture.height, {"R", "G", "B"}, {}, ObjectNumbers(shape_->cut).names()};
+        channels_.names.insert(channels_.names.end(), more.names.begin(), more.names.end());
+        channels_.samples.reserve(aovs->pixels.size() * channels_.names.size());
+        auto light = picture.pixels.begin();
+        for (auto others = more.samples.begin(); others != more.samples.end(); light += 3) {
+            const auto end = others + static_cast<std::ptrdiff_t>(more.names.size());
+            channels_.samples.insert(channels_.samples.end(), light, light + 3);
+            channels_.samples.insert(channels_.samples.end(), others, end);
+            others = end;
+        }
+        return {};
+    }
+    Channels& channels() { return channels_; }
+
+  private:
+    std::optional<PictureShape> shape_; ///< since begin()
+    Channels channels_;
 };
 
 Parameter parameter_of(const ModelParameter& known, const SourceMap& sources) {
@@ -489,6 +517,17 @@ Result<Picture> Model::render() {
         MemoryFilm film(options);
         if (!parts_->draw(film, options, compilation)) return std::nullopt;
         return picture_of(film.picture());
+    });
+}
+
+Result<Channels> Model::aovs() {
+    return parts_->run<Channels>([this](Compilation& compilation) -> std::optional<Channels> {
+        RenderOptions options = parts_->told();
+        options.aovs = true;
+        options.output = "memory.exr"; // is never written
+        ChannelFilm film;
+        if (!parts_->draw(film, options, compilation)) return std::nullopt;
+        return std::move(film.channels());
     });
 }
 

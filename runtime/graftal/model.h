@@ -141,6 +141,14 @@ struct Picture {
     std::vector<std::uint8_t> rgb; ///< 3 width height samples
 };
 
+/// A picture with what its samples meet: the channels that docs/native.md lists under `--aovs`.
+struct Channels {
+    int width = 0, height = 0;
+    std::vector<std::string> names;   ///< "R", "G", "B" (linear light), "A", "coverage", "Z", ...
+    std::vector<float> samples;       ///< the channels of a pixel together, row by row, the top first
+    std::vector<std::string> objects; ///< names by the channel "id": the first is that of 1
+};
+
 /// A part of a picture as it is drawn: linear light, not clamped, 3 floats a pixel.
 struct Tile {
     int x = 0, y = 0, width = 0, height = 0; ///< pixels of the whole picture
@@ -240,6 +248,9 @@ class GRAFTAL_API Model {
     Result<Points> points(std::uint64_t count);
     /// Draws into memory, by the native engine: the pixels of the `.png` that render_to() writes.
     Result<Picture> render();
+    /// The same with what each pixel shows, as `graftal render --aovs -o FILE.exr` writes it: light is not
+    /// denoised.
+    Result<Channels> aovs();
     /// Draws into the listener, pass after pass, by the native engine.
     Result<Drawn> draw(const OnTile& listener);
     /// Draws into a file, `.png` or `.exr`, which appears whole or not at all.

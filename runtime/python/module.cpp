@@ -229,6 +229,14 @@ PYBIND11_MODULE(_graftal, module) {
                  Picture picture = value_of(model, progress, [&] { return model.render(); });
                  return array_of(std::move(picture.rgb), {picture.height, picture.width, 3});
              })
+        .def("aovs",
+             [](Model& model, const py::object& progress) {
+                 Channels seen = value_of(model, progress, [&] { return model.aovs(); });
+                 const auto count = static_cast<py::ssize_t>(seen.names.size());
+                 return py::make_tuple(seen.names,
+                                       array_of(std::move(seen.samples), {seen.height, seen.width, count}),
+                                       seen.objects);
+             })
         .def(
             "render_to",
             [](Model& model, const std::string& path, const std::string& engine, const py::object& progress) {

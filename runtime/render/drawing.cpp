@@ -24,14 +24,16 @@ Tile window_of(const RenderOptions& options, ImageSize size) {
     return options.tile.value_or(whole_of(size));
 }
 
-Drawing::Drawing(const View& view, const RenderOptions& options, PictureFilm& film, const CancelFlag& cancel)
-    : options_(options), film_(film), cancel_(cancel), window_(window_of(options, view.size)) {
+Drawing::Drawing(const PreparedView& prepared, const RenderOptions& options, PictureFilm& film,
+                 const CancelFlag& cancel)
+    : options_(options), film_(film), cancel_(cancel),
+      window_(window_of(options, prepared.viewed->view.size)) {
     picture_.width = window_.width;
     picture_.height = window_.height;
     picture_.channels = 3;
     picture_.pixels.resize(3 * pixels());
-    if (options.needs_aovs()) aovs_.resize(pixels());
-    film.begin({window_, picture_.channels, view.film});
+    if (options.needs_aovs()) aovs_ = AovPicture(pixels(), options.aovs);
+    film.begin({window_, picture_.channels, prepared.viewed->view, prepared.prepared->cut});
 }
 
 Status Drawing::look(const TraceModel& model, const std::vector<Sampling>& looks, double work) {

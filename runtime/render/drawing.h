@@ -21,7 +21,8 @@ Tile window_of(const RenderOptions& options, ImageSize size);
 /// of must outlive it.
 class Drawing {
   public:
-    Drawing(const View& view, const RenderOptions& options, PictureFilm& film, const CancelFlag& cancel);
+    Drawing(const PreparedView& prepared, const RenderOptions& options, PictureFilm& film,
+            const CancelFlag& cancel);
 
     /// Coarse looks, one after the other. `work`: samples a pixel of all looks, earlier and later ones too.
     Status look(const TraceModel& model, const std::vector<Sampling>& looks, double work);

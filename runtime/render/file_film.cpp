@@ -14,9 +14,9 @@ namespace {
 /// straight, it is that of what is met alone.
 Image with_alpha(const Image& picture, const AovPicture& aovs, bool straight) {
     Image image{picture.width, picture.height, 4, {}};
-    image.pixels.reserve(4 * aovs.size());
-    for (std::size_t i = 0; i < aovs.size(); ++i) {
-        const float alpha = aovs[i].coverage;
+    image.pixels.reserve(4 * aovs.pixels.size());
+    for (std::size_t i = 0; i < aovs.pixels.size(); ++i) {
+        const float alpha = aovs.pixels[i].coverage;
         const float share = straight && alpha > 0 ? 1 / alpha : 1;
         for (std::size_t k = 0; k < 3; ++k)
             image.pixels.push_back(share * picture.pixels[3 * i + k]);
@@ -34,7 +34,7 @@ Status DevelopedFilm::end(int, const Image& picture, const AovPicture* aovs) {
     Image image = transparent ? with_alpha(picture, *aovs, !exr) : picture;
     if (format == SampleFormat::linear16 || exr) return take(image, aovs);
     constexpr int rows = 16; // a piece of work
-    const Developer developer(shape_.film, format, shape_.window.x, shape_.window.y);
+    const Developer developer(shape().view.film, format, shape().window.x, shape().window.y);
     const auto develop = [&](int, std::uint64_t piece) {
         const int begin = static_cast<int>(piece) * rows;
         developer.develop(image, begin, std::min(begin + rows, image.height));
@@ -47,7 +47,7 @@ Status DevelopedFilm::end(int, const Image& picture, const AovPicture* aovs) {
 Status FileFilm::take(const Image& developed, const AovPicture* aovs) {
     MoreChannels more;
     const bool has_more = options().aovs && aovs;
-    if (has_more) more = aov_channels(*aovs, ObjectNumbers(cut_), developed.channels < 4);
+    if (has_more) more = aov_channels(*aovs, shape().cut, shape().view, developed.channels < 4);
     return write_image(options().output, developed, options().format, options().metadata,
                        has_more ? &more : nullptr);
 }

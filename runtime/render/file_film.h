@@ -1,6 +1,7 @@
 #pragma once
 
-#include "compiler/detail/graph/cut_graph.h"
+#include <optional>
+
 #include "runtime/render/render.h"
 #include "runtime/trace/picture_film.h"
 
@@ -11,29 +12,28 @@ class DevelopedFilm : public PictureFilm {
   public:
     explicit DevelopedFilm(const RenderOptions& options) : options_(options) {}
 
-    void begin(const PictureShape& shape) override { shape_ = shape; }
+    void begin(const PictureShape& shape) override { shape_.emplace(shape); }
     void tile(const Tile&, const Image&, int) override {}
     Status end(int pass, const Image& picture, const AovPicture* aovs) override;
 
   protected:
     virtual Status take(const Image& developed, const AovPicture* aovs) = 0;
     const RenderOptions& options() const { return options_; }
+    const PictureShape& shape() const { return *shape_; }
 
   private:
     const RenderOptions& options_;
-    PictureShape shape_;
+    std::optional<PictureShape> shape_; ///< since begin()
 };
 
 /// Writes each pass to the file that is asked for, in place of the one before, with the AOVs as further
 /// channels.
 class FileFilm final : public DevelopedFilm {
   public:
-    FileFilm(const RenderOptions& options, const CutGraph& cut) : DevelopedFilm(options), cut_(cut) {}
+    using DevelopedFilm::DevelopedFilm;
 
   private:
     Status take(const Image& developed, const AovPicture* aovs) override;
-
-    const CutGraph& cut_;
 };
 
 /// Keeps the last pass: the samples that the file would have.

@@ -33,7 +33,7 @@ class GpuDrawing {
     GpuDrawing(const PreparedView& prepared, const RenderOptions& options, const CancelFlag& cancel)
         : prepared_(prepared), view_(prepared.viewed->view), options_(options), cancel_(cancel),
           plan_(plan_picture(prepared, options)), window_(window_of(options, view_.size)),
-          file_(options, prepared.prepared->cut), film_(options.film ? *options.film : file_) {
+          file_(options), film_(options.film ? *options.film : file_) {
         picture_.width = window_.width;
         picture_.height = window_.height;
         picture_.channels = 3;
@@ -54,7 +54,7 @@ class GpuDrawing {
     }
 
     Status draw(const FlatModel& model, Gpu& gpu) {
-        film_.begin({window_, picture_.channels, view_.film});
+        film_.begin({window_, picture_.channels, view_, prepared_.prepared->cut});
         bool fits = false;
         const Status status = draw(model, gpu, GpuPicture::usual_frames, fits);
         return fits ? status : draw(model, gpu, GpuPicture::most_frames, fits);
@@ -187,7 +187,7 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
     if (!compilation.status.ok()) return std::nullopt;
     const CancelFlag cancel = session.control().cancel;
     GpuDrawing drawing(prepared, options, cancel);
-    std::string why = options.device ? "" : why_no_card();
+    std::string why = options.aovs ? "'--aovs' names what each sample meets" : options.device ? "" : why_no_card();
     std::optional<FlatModel> model;
     if (why.empty()) model = drawing.flat(why);
     if (model) {

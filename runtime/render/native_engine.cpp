@@ -211,8 +211,8 @@ std::optional<NativeReport> trace_fitted(const PreparedView& prepared, const Ren
                                          Compilation& compilation) {
     const PicturePlan plan = plan_picture(prepared, options);
     const std::unique_ptr<TraceModel> model = model_of(*options.fit, prepared, plan.detail);
-    FileFilm file(options, prepared.prepared->cut);
-    Drawing drawing(prepared.viewed->view, options, options.film ? *options.film : file, cancel);
+    FileFilm file(options);
+    Drawing drawing(prepared, options, options.film ? *options.film : file, cancel);
     compilation.times.push_back({"prepare", preparing.seconds()});
     const Stopwatch drawing_watch;
     const Sampling& sampling = options.fit->sampling;
@@ -308,11 +308,11 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     const View& view = prepared.viewed->view;
     if (options.fit) return trace_fitted(prepared, options, preparing, cancel, compilation);
     PicturePlan plan = plan_picture(prepared, options);
-    // The edges of a part would differ from those of the whole. Coverage, which is never denoised, must fit
-    // the light of a transparent picture.
-    if (options.tile || (options.compile.view.transparent && !options.denoise)) plan.wanted.denoise = false;
-    FileFilm file(options, prepared.prepared->cut);
-    Drawing drawing(view, options, options.film ? *options.film : file, cancel);
+    // The edges of a part would differ from those of the whole. Coverage and mattes, which are never denoised,
+    // must fit the light.
+    if (options.tile || (options.needs_aovs() && !options.denoise)) plan.wanted.denoise = false;
+    FileFilm file(options);
+    Drawing drawing(prepared, options, options.film ? *options.film : file, cancel);
     const double seconds_before = preparing.seconds();
     int draft_block = 0;
     std::function<void(const TraceModel&, double)> on_first_look;

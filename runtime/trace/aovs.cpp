@@ -7,7 +7,13 @@
 
 namespace graftal {
 
-AovSample::AovSample(const SurfaceHit& hit, const Ray& ray, const View& view) {
+namespace {
+
+constexpr std::string_view ground_name = "(ground)";
+
+} // namespace
+
+AovSample::AovSample(const SurfaceHit& hit, const Ray& ray, const View& view, const CutGraph* named) {
     if (!hit.material) return;
     depth = glm::dot(ray(hit.t) - view.camera.location, view.camera.direction);
     normal = glm::dot(hit.normal, ray.direction) > 0 ? -hit.normal : hit.normal;
@@ -16,6 +22,7 @@ AovSample::AovSample(const SurfaceHit& hit, const Ray& ray, const View& view) {
     if (!met) return;
     levels = hit.levels;
     node = view.ground && hit.material == &view.ground->material ? ground_node : hit.node;
+    if (named) mattes = {matte_id(object_name(*named, node)), matte_id(material_name(*hit.material))};
 }
 
 void AovSum::add(const AovSample& sample, double weight, double off_middle) {
@@ -27,6 +34,7 @@ void AovSum::add(const AovSample& sample, double weight, double off_middle) {
     }
     if (!sample.met) return;
     met_weight_ += weight;
+    mattes_.add(sample.mattes, weight);
     depth_ += weight * sample.depth;
     normal_ += weight * sample.normal;
     albedo_ += weight * sample.albedo;
@@ -46,6 +54,14 @@ AovPixel AovSum::pixel() const {
     return pixel;
 }
 
+std::string_view object_name(const CutGraph& cut, std::uint32_t node) {
+    return node < cut.nodes.size() ? std::string_view(cut.nodes[node].name) : ground_name;
+}
+
+std::string_view material_name(const Material& material) {
+    return material.name.empty() ? "(plain)" : std::string_view(material.name);
+}
+
 ObjectNumbers::ObjectNumbers(const CutGraph& cut) {
     std::unordered_map<std::string_view, std::uint32_t> known;
     for (const CutNode& node : cut.nodes) {
@@ -53,7 +69,7 @@ ObjectNumbers::ObjectNumbers(const CutGraph& cut) {
         if (added) names_.push_back(node.name);
         number_of_node_.push_back(place->second);
     }
-    names_.emplace_back("(ground)");
+    names_.emplace_back(ground_name);
 }
 
 std::uint32_t ObjectNumbers::of(std::uint32_t node) const {

@@ -2,11 +2,14 @@
 
 #include <cstdint>
 #include <limits>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/detail/graph/cut_graph.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/ray.h"
+#include "runtime/trace/mattes.h"
 #include "runtime/trace/shade/surfaces.h"
 
 namespace graftal {
@@ -25,7 +28,14 @@ struct AovPixel {
 inline constexpr std::uint32_t ground_node = SurfaceHit::no_node - 1;
 
 /// Row by row, top first.
-using AovPicture = std::vector<AovPixel>;
+struct AovPicture {
+    std::vector<AovPixel> pixels;
+    std::vector<PixelMattes> mattes; ///< of each pixel; empty where nobody asks for them
+
+    AovPicture() = default;
+    explicit AovPicture(std::size_t size, bool with_mattes = false)
+        : pixels(size), mattes(with_mattes ? size : 0) {}
+};
 
 /// The first surface that one sample meets.
 struct AovSample {
@@ -35,10 +45,12 @@ struct AovSample {
     Rgb albedo{0.0};
     std::uint32_t node = SurfaceHit::no_node;
     std::uint32_t levels = 0;
+    MatteIds mattes; ///< where they are asked for
 
     AovSample() = default;
-    /// `hit` is of the ray, and has no material where nothing is met. What is no number is not met.
-    AovSample(const SurfaceHit& hit, const Ray& ray, const View& view);
+    /// `hit` is of the ray, and has no material where nothing is met. What is no number is not met. `named`:
+    /// null, or the graph whose names make the mattes.
+    AovSample(const SurfaceHit& hit, const Ray& ray, const View& view, const CutGraph* named = nullptr);
 };
 
 /// The samples of a pixel.
@@ -47,6 +59,7 @@ class AovSum {
     /// `off_middle`: any measure of the distance from the pixel's middle. Of equal ones the first counts.
     void add(const AovSample& sample, double weight, double off_middle);
     AovPixel pixel() const;
+    PixelMattes mattes() const { return weight_ > 0 ? mattes_.shares(weight_) : PixelMattes{}; }
 
   private:
     double weight_ = 0, met_weight_ = 0;
@@ -56,7 +69,12 @@ class AovSum {
     double nearest_ = std::numeric_limits<double>::infinity();
     std::uint32_t node_ = SurfaceHit::no_node;
     std::uint32_t levels_ = 0;
+    MatteSum mattes_;
 };
+
+/// Names of what mattes tell apart: of a node of the graph or of ground_node, and of a material.
+std::string_view object_name(const CutGraph& cut, std::uint32_t node);
+std::string_view material_name(const Material& material);
 
 /// Numbers for the objects of a model, from 1 on in the order of its graph; 0 is nothing. Nodes that stand
 /// for one object, such as its halves, share its number. The last number is the ground's.

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "compiler/light/film.h"
+#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/scene/scene.h"
 #include "compiler/support/status.h"
 #include "runtime/image/image.h"
 #include "runtime/trace/aovs.h"
@@ -8,11 +9,12 @@
 
 namespace graftal {
 
-/// The picture that comes.
+/// The picture that comes. The view and the graph outlive the film.
 struct PictureShape {
     Tile window; ///< the part of the whole picture that is drawn
     int channels = 3;
-    Film film; ///< the view's, which makes samples for people of its light
+    const View& view;    ///< whose film makes samples for people of its light
+    const CutGraph& cut; ///< whose nodes AOVs name
 };
 
 /// The door by which a picture leaves the tracer: a file, the memory of a caller, a socket, the loss of a fit

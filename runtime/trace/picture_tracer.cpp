@@ -47,13 +47,14 @@ class Worker {
     Worker(const TraceModel& model, const ShaderLimits& limits, const TraceControl& control)
         : rays_(model.view), traversal_(model),
           shader_(model.view, traversal_, limits, model.textures.of_ground), film_(model.view.film),
-          view_(model.view), control_(control) {}
+          view_(model.view), cut_(model.prepared.cut), control_(control) {}
 
     /// The tile of the whole picture, as far as it lies in the window, which `picture` and `aovs` show; the
     /// latter may be null. False if it was cancelled before the last ray.
     bool trace(const Sampling& sampling, const Tile& tile, const Tile& window, Image& picture,
                AovPicture* aovs) {
         aovs_ = aovs;
+        named_ = aovs && !aovs->mattes.empty() ? &cut_ : nullptr;
         window_ = window;
         if (sampling.block > 1) return trace_blocks(sampling.block, tile, picture);
         const Tile seen = common(tile, window);
@@ -185,7 +186,7 @@ class Worker {
                 traversal_.begin_path();
                 const Rgb rgb =
                     shader_.radiance(rays[number], randoms[number], aovs_ ? &met : nullptr, ahead_, number);
-                if (aovs_) seen_ = AovSample(met, rays[number], view_);
+                if (aovs_) seen_ = AovSample(met, rays[number], view_, named_);
                 more = take(i, rgb);
             }
         }
@@ -206,7 +207,11 @@ class Worker {
             picture.pixels[first + static_cast<std::size_t>(c)] = static_cast<float>(rgb[c]);
     }
 
-    void set(int x, int y, const AovSum& sum) { (*aovs_)[index_in_window(x, y)] = sum.pixel(); }
+    void set(int x, int y, const AovSum& sum) {
+        const std::size_t index = index_in_window(x, y);
+        aovs_->pixels[index] = sum.pixel();
+        if (named_) aovs_->mattes[index] = sum.mattes();
+    }
 
     /// A block has its middle in the whole picture, however little of it is in the window.
     bool trace_blocks(int block, const Tile& tile, Image& picture) {
@@ -288,8 +293,9 @@ class Worker {
         return true;
     }
 
-    static bool has_samples(const Sampling& sampling, int x, int y) {
-        return sampling.sparse == 1 || ((x + y) % 2 == 0 && (sampling.sparse == 2 || x % 2 == 0));
+    /// Nothing but samples can tell what a pixel shows.
+    bool has_samples(const Sampling& sampling, int x, int y) const {
+        return sampling.sparse == 1 || aovs_ || ((x + y) % 2 == 0 && (sampling.sparse == 2 || x % 2 == 0));
     }
 
     std::uint64_t seed_of(int x, int y) const {
@@ -377,6 +383,7 @@ class Worker {
     Shader shader_;
     const Film& film_;
     const View& view_;
+    const CutGraph& cut_;
     const TraceControl& control_;
     Shader::Ahead ahead_;
     std::vector<SampleStream> randoms_; ///< of the sights ahead
@@ -384,7 +391,8 @@ class Worker {
     TraceStatistics noise_; ///< the fields of noise
     std::vector<Rgb> row_, sums_;
     Tile window_;
-    AovPicture* aovs_ = nullptr; ///< null: none are wanted
+    AovPicture* aovs_ = nullptr;      ///< null: none are wanted
+    const CutGraph* named_ = nullptr; ///< null: no mattes are
     AovSample seen_;             ///< by the last look, if they are
     std::vector<AovSum> aov_sums_;
 };
@@ -465,7 +473,7 @@ bool PictureTracer::trace(const Sampling& sampling, const TraceControl& control,
     GRAFTAL_CHECK(window.lies_in(model_.view.size), "trace: a window beyond the picture");
     GRAFTAL_CHECK(picture.channels == 3 && picture.width == window.width && picture.height == window.height,
                   "trace: a picture of another size");
-    GRAFTAL_CHECK(!aovs || 3 * aovs->size() == picture.pixels.size(), "trace: AOVs of another size");
+    GRAFTAL_CHECK(!aovs || 3 * aovs->pixels.size() == picture.pixels.size(), "trace: AOVs of another size");
     GRAFTAL_CHECK(!control.samples || 3 * control.samples->size() == picture.pixels.size(),
                   "trace: samples of another size");
     const std::vector<Tile> tiles = tiles_of(model_.view.size, sampling.block, window);

@@ -87,8 +87,8 @@ Agreement compare(const std::string& name, Session& session, const StageOptions&
     PictureTracer(model).trace(once, {}, light, &by_native);
     for (std::size_t i = 0; i < window.pixels(); ++i) {
         ++seen.rays;
-        seen.met += by_native[i].coverage > 0;
-        seen.differ += !same(by_gpu[i], by_native[i]);
+        seen.met += by_native.pixels[i].coverage > 0;
+        seen.differ += !same(by_gpu.pixels[i], by_native.pixels[i]);
     }
     std::printf("agreement %s: %zu of %zu differ, %zu met\n", name.c_str(), seen.differ, seen.rays, seen.met);
     return seen;

@@ -160,6 +160,20 @@ class Package(unittest.TestCase):
             np.testing.assert_array_equal(drawn, png(self.path("a.png")))
             self.assertGreater(len(np.unique(drawn)), 10)
 
+    def test_aovs_show_what_is_met(self):
+        model = graftal.inst("camera { location: 0,0,5 look_at: 0,0,0 orthographic width: 4 }\nlight { sun: 1,2,3 }\n"
+                             "material red { color: 0.8, 0.2, 0.1 }\nobject m { instance: sphere material: red }\n")
+        seen, names = model.aovs((64, 48), "draft")
+        x, y = np.meshgrid((np.arange(64) + 0.5) / 16 - 2, 1.5 - (np.arange(48) + 0.5) / 16)
+        inside, outside = x**2 + y**2 < 0.9, x**2 + y**2 > 1.1
+        self.assertEqual(seen["Z"].dtype, np.float32)
+        self.assertTrue((seen["coverage"][inside] == 1).all() and (seen["coverage"][outside] == 0).all())
+        np.testing.assert_allclose(seen["Z"][inside], 5 - np.sqrt(1 - (x**2 + y**2)[inside]), atol=0.02)
+        self.assertTrue(np.isinf(seen["Z"][outside]).all())
+        self.assertEqual({names[int(number) - 1] for number in seen["id"][inside]}, {"m"})
+        np.testing.assert_allclose(seen["CryptoMaterial00.G"], seen["coverage"], atol=1e-6)
+        self.assertTrue((seen["R"][inside] > seen["G"][inside]).all())
+
     def test_plants_are_the_rows_of_the_program(self):
         path = scene("abop/fig2_6a.lsys")
         self.program("export", path, "--steps", "4", "-q", "-o", self.path("a.csv"))

@@ -52,6 +52,6 @@ vec2 next_place(INOUT(Stream) stream) {
     ++stream.pair;
     const uvec2 first = mixed64(key), second = mixed64(sum64(key, golden64(1u)));
     const uint index = scrambled_bits(stream.index, first.x);
-    return vec2(unit_of(scrambled_bits(bits_reversed(index), first.y)),
-                unit_of(scrambled_bits(sobol_second(index), second.x)));
+    return vec2(unit_of(scrambled_first(index, first.y)),
+                unit_of(scrambled_second(index, second.x)));
 }

@@ -203,6 +203,18 @@ class Model:
         self._ask(size, quality)
         return self._model.render(progress)
 
+    def aovs(
+        self, size: "tuple[int, int]" = (1280, 720), quality: str = "normal", progress: Optional[Progress] = None
+    ) -> "tuple[dict[str, np.ndarray], list[str]]":
+        """What the samples of a picture meet: what `graftal render --aovs -o FILE.exr` writes.
+
+        Arrays (height, width) of float32 by the channel's name, such as "R" (linear light), "coverage", "Z", "normal.X" and
+        "id"; and the names of objects, that of the id n at n - 1. The light is not denoised.
+        """
+        self._ask(size, quality)
+        names, samples, objects = self._model.aovs(progress)
+        return {name: samples[:, :, number] for number, name in enumerate(names)}, objects
+
     def word(self, progress: Optional[Progress] = None) -> str:
         """The string that an L-system derives, before interpretation, as an axiom would have it."""
         return self._model.word(progress)

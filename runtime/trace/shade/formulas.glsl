@@ -126,13 +126,19 @@ FORMULA uint scrambled_bits(uint x, uint seed) {
     return bits_reversed(flipped_by_lower_bits(bits_reversed(x), seed));
 }
 
-/// The second dimension of Sobol's sequence; the first is bits_reversed(index).
-FORMULA uint sobol_second(uint index) {
-    uint result = 0u;
-    uint left = index;
-    for (uint direction = 1u << 31; left != 0u; left >>= 1) {
-        if ((left & 1u) != 0u) result ^= direction;
-        direction ^= direction >> 1; // the next row of Pascal's triangle mod 2
-    }
-    return result;
+/// The first dimension of Sobol's sequence, which is bits_reversed(index), scrambled by Owen's rule.
+FORMULA uint scrambled_first(uint index, uint seed) {
+    return bits_reversed(flipped_by_lower_bits(index, seed));
+}
+
+/// The second dimension likewise. Its bit j from the top is the parity of the bits i of the index for which the
+/// binomial coefficient C(i, j) is odd; by Lucas that are those whose i has all the bits of j.
+FORMULA uint scrambled_second(uint index, uint seed) {
+    uint x = index;
+    x ^= (x >> 1) & 0x55555555u;
+    x ^= (x >> 2) & 0x33333333u;
+    x ^= (x >> 4) & 0x0f0f0f0fu;
+    x ^= (x >> 8) & 0x00ff00ffu;
+    x ^= x >> 16;
+    return bits_reversed(flipped_by_lower_bits(x, seed));
 }

@@ -18,10 +18,8 @@ glm::dvec2 SampleStream::next() {
     const std::uint64_t first = random(0), second = random(1);
     // Scrambling the index shuffles the order, and keeps each power of two of samples together.
     const std::uint32_t index = formulas::scrambled_bits(index_, static_cast<std::uint32_t>(first));
-    return {
-        unit(formulas::scrambled_bits(formulas::bits_reversed(index),
-                                      static_cast<std::uint32_t>(first >> 32))),
-        unit(formulas::scrambled_bits(formulas::sobol_second(index), static_cast<std::uint32_t>(second)))};
+    return {unit(formulas::scrambled_first(index, static_cast<std::uint32_t>(first >> 32))),
+            unit(formulas::scrambled_second(index, static_cast<std::uint32_t>(second)))};
 }
 
 } // namespace graftal

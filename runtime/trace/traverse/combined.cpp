@@ -75,6 +75,7 @@ class Traversal::Operands {
     bool ask(Search search, std::uint32_t group, double t, double most) {
         constexpr double rounding = 1e-15;
         const double least = t + std::max(same_place * frame_.unit, rounding * std::abs(t));
+        inner_.more_work_ += RayWork::asked;
         inner_.search_ = search;
         inner_.leaves_ = least;
         const RayRange range{least, most};

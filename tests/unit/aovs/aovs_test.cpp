@@ -1,5 +1,6 @@
 // AOVs in EXR files, against closed forms.
 
+#include <bit>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -9,9 +10,11 @@
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "runtime/render/native_engine.h"
 #include "runtime/system/temporary_directory.h"
+#include "runtime/trace/mattes.h"
 
 namespace graftal {
 namespace {
@@ -21,12 +24,29 @@ struct Channels {
     int width = 0, height = 0;
     std::map<std::string, std::vector<float>> of;
     std::map<float, std::string> names; ///< by id
+    std::map<std::string, std::string> matte_tags; ///< of all layers, without the layer's key
 
     float at(const std::string& name, int x, int y) const {
         return of.at(name)[static_cast<std::size_t>(y * width + x)];
     }
     Vec3 vector_at(const std::string& name, int x, int y) const {
         return {at(name + ".X", x, y), at(name + ".Y", x, y), at(name + ".Z", x, y)};
+    }
+    /// The layer that a tag cryptomatte/KEY/... is of.
+    static std::string matte_layer(const OIIO::ImageSpec& spec, const std::string& tag) {
+        return std::string(spec.get_string_attribute(tag.substr(0, tag.rfind('/')) + "/name"));
+    }
+    /// The share of a pixel that belongs to a name, by the manifest and the six ranks of the layer.
+    float matte(const std::string& layer, const std::string& name, int x, int y) const {
+        const nlohmann::json manifest = nlohmann::json::parse(matte_tags.at(layer + "/manifest"));
+        if (!manifest.contains(name)) return 0;
+        const auto id = static_cast<std::uint32_t>(std::stoul(manifest[name].get<std::string>(), nullptr, 16));
+        float share = 0;
+        for (const std::string channel : {"00", "01", "02"})
+            for (const auto& [id_at, share_at] : {std::pair(".R", ".G"), std::pair(".B", ".A")})
+                if (std::bit_cast<std::uint32_t>(at(layer + channel + id_at, x, y)) == id)
+                    share += at(layer + channel + share_at, x, y);
+        return share;
     }
     std::string object_at(int x, int y) const {
         const auto name = names.find(at("id", x, y));
@@ -66,6 +86,10 @@ class Aovs : public testing::Test {
         EXPECT_TRUE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, samples.data()));
         for (std::size_t i = 0; i < samples.size(); ++i)
             channels.of[spec.channelnames[i % spec.channelnames.size()]].push_back(samples[i]);
+        for (const OIIO::ParamValue& tag : spec.extra_attribs)
+            if (const std::string key = tag.name().string(); key.starts_with("cryptomatte/"))
+                channels.matte_tags[channels.matte_layer(spec, key) + key.substr(key.rfind('/'))] =
+                    tag.get_string();
         std::istringstream ids{std::string(spec.get_string_attribute("graftal:ids"))};
         std::string name;
         for (float id = 0; ids >> id >> name;)
@@ -97,6 +121,8 @@ TEST_F(Aovs, AreTheChannelsThatTheDocumentationNames) {
         names.push_back(name);
         EXPECT_EQ(samples.size(), 64u * 48) << name;
     }
+    std::erase_if(names, [](const std::string& name) { return name.starts_with("Crypto"); });
+    EXPECT_EQ(channels.of.size() - names.size(), 24u); // mattes_test.cpp
     EXPECT_THAT(names, testing::UnorderedElementsAre("R", "G", "B", "A", "coverage", "Z", "normal.X",
                                                      "normal.Y", "normal.Z", "albedo.R", "albedo.G",
                                                      "albedo.B", "id", "levels"));
@@ -214,6 +240,7 @@ TEST_F(Aovs, DoNotDependOnThreadsAndLeaveThePicture) {
         for (const bool progressive : {false, true}) {
             options_.antialias = 2;
             options_.samples = 8;
+            options_.denoise = false;
             options_.progressive = progressive;
             options_.threads = 1;
             const Channels channels = drawn(model);
@@ -230,6 +257,74 @@ TEST_F(Aovs, DoNotDependOnThreadsAndLeaveThePicture) {
             EXPECT_EQ(channels.at("coverage", 32, 24), 1);
             EXPECT_NEAR(channels.at("Z", 32, 24), 4, 0.01);
         }
+}
+
+TEST(Mattes, IdsAreThoseOfTheSpecification) {
+    EXPECT_EQ(matte_id("test"), 0xba6bd213u);
+    EXPECT_EQ(matte_id("Hello, world!"), 0xc0363e43u);
+    EXPECT_EQ(matte_id("The quick brown fox jumps over the lazy dog"), 0x2e4ff723u);
+    for (int i = 0; i < 10000; ++i) // of which one in 128 is no normal number by its hash alone
+        EXPECT_TRUE(std::isnormal(std::bit_cast<float>(matte_id("name" + std::to_string(i))))) << i;
+}
+
+TEST(Mattes, TheLargestSharesCome) {
+    MatteSum sum;
+    for (std::uint32_t id = 1; id <= 8; ++id)
+        sum.add({id, 9}, id);
+    sum.add({}, 4); // a sample that meets nothing
+    const PixelMattes mattes = sum.shares(40);
+    for (std::uint32_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(mattes.objects[i].id, 8 - i);
+        EXPECT_FLOAT_EQ(mattes.objects[i].share, static_cast<float>(8 - i) / 40);
+    }
+    EXPECT_EQ(mattes.materials[0].id, 9u);
+    EXPECT_FLOAT_EQ(mattes.materials[0].share, 0.9f);
+    EXPECT_EQ(mattes.materials[1].id, 0u);
+}
+
+const std::string red = "material red { color: 0.8, 0.2, 0.1 }\n";
+const std::string front = "canonical object front { instance: sphere scale: 0.6 material: red }\n";
+const std::string back = "canonical object back { instance: cube scale: 1.1 translate: 0.4, 0.2, -3 }\n";
+
+TEST_F(Aovs, MattesShareEachPixelAmongWhatItShows) {
+    options_.antialias = 4;
+    const Channels channels =
+        drawn(parallel + "ground { height: -1 }\n" + red + front + back +
+              "object m { instance: front\n instance: back }\n");
+    EXPECT_EQ(channels.matte_tags.at("CryptoObject/hash"), "MurmurHash3_32");
+    EXPECT_EQ(channels.matte_tags.at("CryptoMaterial/conversion"), "uint32_to_float32");
+    int shared = 0;
+    for (int j = 0; j < 48; ++j)
+        for (int i = 0; i < 64; ++i) {
+            const float coverage = channels.at("coverage", i, j);
+            const float ball = channels.matte("CryptoObject", "front", i, j);
+            const float cube = channels.matte("CryptoObject", "back", i, j);
+            const float ground = channels.matte("CryptoObject", "(ground)", i, j);
+            EXPECT_NEAR(ball + cube + ground, coverage, 1e-6);
+            EXPECT_EQ(channels.matte("CryptoMaterial", "red", i, j), ball);
+            EXPECT_NEAR(channels.matte("CryptoMaterial", "(plain)", i, j), cube + ground, 1e-6);
+            shared += ball > 0 && cube > 0;
+        }
+    EXPECT_GT(shared, 20);
+}
+
+/// A mask of what nothing hides is the picture of it alone.
+TEST_F(Aovs, AMatteIsThePictureOfItsObjectAlone) {
+    options_.samples = 16;
+    options_.denoise = false;
+    const std::string soft = "sky { zenith: 0.3, 0.4, 0.7  horizon: 0.9, 0.8, 0.7 }\n";
+    const Channels both =
+        drawn(soft + parallel + red + front + back + "object m { instance: front\n instance: back }\n");
+    const Channels alone = drawn(soft + parallel + red + front + "object m { instance: front }\n");
+    double edges = 0;
+    for (int j = 0; j < 48; ++j)
+        for (int i = 0; i < 64; ++i) {
+            const float coverage = alone.at("coverage", i, j);
+            // Noise may end the samples of a pixel sooner in one of the pictures.
+            EXPECT_NEAR(both.matte("CryptoMaterial", "red", i, j), coverage, 0.2);
+            edges += coverage > 0 && coverage < 1 ? both.matte("CryptoMaterial", "red", i, j) - coverage : 0;
+        }
+    EXPECT_NEAR(edges, 0, 1);
 }
 
 } // namespace

@@ -3,11 +3,9 @@
 
 #include "runtime/inverse/blocks/coded_picture.h"
 #include "runtime/inverse/blocks/encode.h"
-#include "runtime/system/file.h"
-#include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
+#include "tools/graftal/commands/fit_answer.h"
 #include "tools/graftal/progress_bar.h"
-#include "tools/graftal/report.h"
 
 namespace graftal {
 
@@ -73,13 +71,8 @@ int run_fit_blocks(const Options& options) {
     const std::optional<CodedPicture> coded =
         code_picture(options.points.target, options.fit.tolerance.value_or(BlockCoding().tolerance),
                      block_task(options, bar), interruption.flag(), compilation);
-    if (coded) compilation.status = write_text(options.render.output, coded->text);
     bar.clear();
-    const int status = conclude(options, compilation, interruption.signal());
-    if (status != exit_done || !coded) return status;
-    if (options.json) return print_output(coded_json(options, *coded).dump(2) + "\n");
-    if (!options.quiet) say(coded_text(options, *coded));
-    return status;
+    return answer_fit(options, coded, coded_json, coded_text, interruption, compilation);
 }
 
 int run_render_pifs(const Options& options) {

@@ -4,11 +4,9 @@
 #include "runtime/inverse/found_model.h"
 #include "runtime/inverse/lsystem/drawing_file.h"
 #include "runtime/inverse/lsystem/found_lsystem.h"
-#include "runtime/system/file.h"
-#include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
+#include "tools/graftal/commands/fit_answer.h"
 #include "tools/graftal/progress_bar.h"
-#include "tools/graftal/report.h"
 
 namespace graftal {
 
@@ -98,22 +96,6 @@ std::string lsystem_report(const Options& options, const FoundLsystem& found) {
                        found.seconds);
 }
 
-/// Writes what was found, and tells of it.
-template<typename Found>
-int finish(const Options& options, const std::optional<Found>& found,
-           Json (*json)(const Options&, const Found&), std::string (*report)(const Options&, const Found&),
-           const Interruption& interruption, Compilation& compilation) {
-    if (found) compilation.status = write_text(options.render.output, found->text);
-    const int status = conclude(options, compilation, interruption.signal());
-    if (!found || !compilation.status.ok()) return status;
-    if (options.json) {
-        const int printed = print_output(json(options, *found).dump(2) + "\n");
-        return status == exit_done ? printed : status;
-    }
-    if (!options.quiet) say(report(options, *found));
-    return status;
-}
-
 int run_fit_lsystem(const Options& options) {
     ProgressBar bar(!options.quiet);
     FindLsystemOptions find;
@@ -129,7 +111,7 @@ int run_fit_lsystem(const Options& options) {
     const Interruption interruption;
     const std::optional<FoundLsystem> found = find_lsystem(find, interruption.flag(), compilation);
     bar.clear();
-    return finish(options, found, lsystem_json, lsystem_report, interruption, compilation);
+    return answer_fit(options, found, lsystem_json, lsystem_report, interruption, compilation);
 }
 
 } // namespace
@@ -147,7 +129,7 @@ int run_fit(const Options& options) {
     const Interruption interruption;
     const std::optional<FoundModel> found = find_model(find, interruption.flag(), compilation);
     bar.clear();
-    return finish(options, found, fit_json, fit_text, interruption, compilation);
+    return answer_fit(options, found, fit_json, fit_text, interruption, compilation);
 }
 
 } // namespace graftal

@@ -261,7 +261,7 @@ void add_view(CLI::App& app, Options& options) {
     add_work(
         app, options,
         "Limit of the work for a picture, roughly in seconds of one processor; graftal draws coarser where "
-        "a picture would take more (default by --quality: 5, 15 or 600; with POV-Ray 20, 40 or 1200)");
+        "a picture would take more (default by --quality: 5, 12 or 600; with POV-Ray 20, 40 or 1200)");
     app.add_flag("--visible-only", compile.detail.visible_only,
                  "Leave out parts that the camera does not see, and their shadows too");
     static const std::map<std::string, Quality> qualities = {

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "compiler/detail/coarser.h"
 #include "compiler/detail/work.h"
 #include "compiler/lower/plant.h"
-#include "compiler/support/number.h"
 #include "runtime/plants/plant_rays.h"
 #include "runtime/plants/plant_tree.h"
 
@@ -17,7 +17,7 @@ namespace graftal {
 
 namespace {
 
-constexpr float no_number = std::numeric_limits<float>::quiet_NaN();
+constexpr float unknown_light = std::numeric_limits<float>::quiet_NaN();
 constexpr int first_samples = 4;
 constexpr std::uint64_t organs_a_task = 64, tasks_a_block = 64;
 /// Organs that are looked at once to tell what all of them take.
@@ -155,7 +155,8 @@ class PlantLighting {
 
     PlantLight result(int samples) {
         PlantLight light;
-        light.organs.assign(plant_.modules.size(), {no_number, no_number, no_number, no_number});
+        light.organs.assign(plant_.modules.size(),
+                            {unknown_light, unknown_light, unknown_light, unknown_light});
         light.has_sun = !sky_.suns.empty();
         light.samples = samples;
         light.lit_organs = organs_.size();

@@ -16,7 +16,6 @@ namespace graftal {
 
 namespace {
 
-constexpr std::uint32_t none = PlantModule::none;
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 /// Seconds of one processor for a row or a triangle, with all directions.
 constexpr double price = 5e-7;
@@ -71,7 +70,8 @@ class Measurer {
         measures_.steps = plant_.steps;
         bears_.assign(plant_.modules.size(), false);
         for (std::size_t i = 0; i < plant_.modules.size(); ++i)
-            if (is_segment(plant_.modules[i]) && tree_.bearer[i] != none) bears_[tree_.bearer[i]] = true;
+            if (is_segment(plant_.modules[i]) && tree_.bearer[i] != PlantModule::none)
+                bears_[tree_.bearer[i]] = true;
         for (std::uint32_t i = 0; i < plant_.modules.size(); ++i) {
             meter_.add();
             add_module(i);
@@ -83,9 +83,10 @@ class Measurer {
   private:
     void add_module(std::uint32_t id) {
         const PlantModule& module = plant_.modules[id];
-        const PlantModule& whole = module.part_of == none ? module : plant_.modules[module.part_of];
+        const PlantModule& whole =
+            module.part_of == PlantModule::none ? module : plant_.modules[module.part_of];
         PlantSums sums;
-        sums.modules = module.part_of == none ? 1 : 0;
+        sums.modules = module.part_of == PlantModule::none ? 1 : 0;
         if (is_segment(module)) add_segment(id, sums);
         if (is_blade(module)) add_blade(id, sums);
         if (module.organ == Organ::ball) add_ball(module);
@@ -118,16 +119,16 @@ class Measurer {
         }
         const std::uint32_t bearer = tree_.bearer[id];
         AxisOrder& order = at(measures_.orders, module.order);
-        const bool begins_axis = bearer == none || plant_.modules[bearer].order < module.order;
+        const bool begins_axis = bearer == PlantModule::none || plant_.modules[bearer].order < module.order;
         if (begins_axis) ++order.axes;
-        if (begins_axis && bearer != none) {
+        if (begins_axis && bearer != PlantModule::none) {
             const double angle = angle_between_deg(along, direction_of(plant_.modules[bearer]));
             order.angle_deg.add(angle);
             measures_.angle_deg.add(angle);
         }
         StreamOrder& stream = at(measures_.streams, tree_.strahler[id] - 1u);
         ++stream.segments;
-        if (bearer == none || tree_.strahler[bearer] != tree_.strahler[id]) ++stream.streams;
+        if (bearer == PlantModule::none || tree_.strahler[bearer] != tree_.strahler[id]) ++stream.streams;
         stream.length += module.length;
         stream.width_length += module.length * mean_width;
     }

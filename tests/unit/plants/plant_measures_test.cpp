@@ -18,8 +18,6 @@ using test::plant_of;
 using test::plant_text;
 using test::square;
 
-constexpr double pi = std::numbers::pi;
-
 PlantMeasures measures_of(const std::string& block, std::optional<double> ground = {}) {
     const auto plant = plant_of(plant_text("material leaf { color: 0,1,0 }", block));
     return measure_plant(*plant, tree_of(*plant), ground);
@@ -31,8 +29,8 @@ TEST(PlantMeasures, OfAFork) {
     EXPECT_EQ(m.all.modules, 6u);
     EXPECT_EQ(m.tips, 3u);
     EXPECT_DOUBLE_EQ(m.all.length, 8);
-    EXPECT_NEAR(m.all.wood_volume, 8 * pi * 0.0025, 1e-12);
-    EXPECT_NEAR(m.all.wood_area, 8 * pi * 0.1, 1e-12);
+    EXPECT_NEAR(m.all.wood_volume, 8 * std::numbers::pi * 0.0025, 1e-12);
+    EXPECT_NEAR(m.all.wood_area, 8 * std::numbers::pi * 0.1, 1e-12);
     EXPECT_DOUBLE_EQ(m.longest_path, 6);
     EXPECT_DOUBLE_EQ(m.mean_path, 4);
     EXPECT_EQ(m.angle_deg.count(), 2u);
@@ -65,10 +63,11 @@ TEST(PlantMeasures, OfALevelLeaf) {
     EXPECT_NEAR(m.ground(), 8, 1e-12);
     EXPECT_NEAR(m.leaf_inclination_deg, 0, 1e-6);
     for (const Projected& some : m.projected)
-        EXPECT_NEAR(some.leaf_area, 4 * std::sin(some.elevation_deg * pi / 180), 1e-9);
+        EXPECT_NEAR(some.leaf_area, 4 * std::sin(some.elevation_deg * std::numbers::pi / 180), 1e-9);
     EXPECT_NEAR(measures_of("axiom " + square(1)).leaf_inclination_deg, 90, 1e-9);
     EXPECT_NEAR(measures_of("axiom &(50)" + square(1)).leaf_inclination_deg, 40, 1e-9);
-    EXPECT_NEAR(measures_of("axiom &(90)@o(2)").crown_area, pi, 0.03 * pi) << "a disc, as a polygon of 16";
+    EXPECT_NEAR(measures_of("axiom &(90)@o(2)").crown_area, std::numbers::pi, 0.03 * std::numbers::pi)
+        << "a disc, as a polygon of 16";
 }
 
 TEST(PlantMeasures, OfLeavesThatAreModels) {
@@ -79,7 +78,8 @@ TEST(PlantMeasures, OfLeavesThatAreModels) {
     EXPECT_EQ(m.all.leaves, 3u);
     EXPECT_NEAR(m.all.leaf_area, 1.5, 1e-12);
     EXPECT_NEAR(m.projected[0].leaf_area, 1.25, 1e-12);
-    EXPECT_NEAR(m.projected.back().leaf_area, 0.25 * 2 / pi, 0.002) << "the upright one, mean over all sides";
+    EXPECT_NEAR(m.projected.back().leaf_area, 0.25 * 2 / std::numbers::pi, 0.002)
+        << "the upright one, mean over all sides";
     EXPECT_DOUBLE_EQ(m.all.length, 3);
     double names = 0, materials = 0, ranks = 0, orders = 0;
     for (const NamedSums& sums : m.names)
@@ -108,8 +108,8 @@ TEST(PlantMeasures, OutlineIsTheConvexHull) {
     Outline outline;
     for (int i = 0; i < 5000; ++i)
         outline.add({std::cos(i * 0.7) * (i % 7) / 6, std::sin(i * 0.7) * (i % 7) / 6});
-    EXPECT_LT(outline.area(), pi);
-    EXPECT_GT(outline.area(), pi - 0.01);
+    EXPECT_LT(outline.area(), std::numbers::pi);
+    EXPECT_GT(outline.area(), std::numbers::pi - 0.01);
     for (const glm::dvec2 corner : {glm::dvec2(2, 0), {0, 2}, {-2, 0}, {0, -2}, {1, 1}, {2, 0}})
         outline.add(corner);
     EXPECT_NEAR(outline.area(), 8, 1e-12);
@@ -129,9 +129,10 @@ TEST(PlantMeasures, KeysAreExplained) {
     const auto json = nlohmann::json::parse(measures_json("m.lsys", m, &*lit.light));
     for (const auto& [key, value] : json.items()) {
         EXPECT_TRUE(value.is_object() || is_known(key)) << key;
-        if (value.is_object())
+        if (value.is_object()) {
             for (const auto& [inner, number] : value.items())
                 EXPECT_TRUE(is_known(key + " " + inner)) << key << " " << inner;
+        }
         if (!value.is_array()) continue;
         ASSERT_FALSE(value.empty()) << key;
         for (const auto& [column, number] : value.front().items())

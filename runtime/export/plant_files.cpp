@@ -43,6 +43,9 @@ struct Column {
     double (*value)(const PlantRow& row);
 };
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+double six_decimals(float number) {
+    return std::nearbyint(1e6 * static_cast<double>(number)) / 1e6;
+}
 constexpr Column columns[] = {
     {"x", [](const PlantRow& row) { return row.module.start.x; }},
     {"y", [](const PlantRow& row) { return row.module.start.y; }},
@@ -64,10 +67,10 @@ constexpr Column columns[] = {
 };
 /// The light on organs, where it was asked for.
 constexpr Column light_columns[] = {
-    {"irradiance", [](const PlantRow& row) { return static_cast<double>(row.light->light); }},
-    {"irradiance_error", [](const PlantRow& row) { return static_cast<double>(row.light->error); }},
-    {"absorbed", [](const PlantRow& row) { return static_cast<double>(row.light->absorbed); }},
-    {"sunlit", [](const PlantRow& row) { return static_cast<double>(row.light->sunlit); }},
+    {"irradiance", [](const PlantRow& row) { return six_decimals(row.light->light); }},
+    {"irradiance_error", [](const PlantRow& row) { return six_decimals(row.light->error); }},
+    {"absorbed", [](const PlantRow& row) { return six_decimals(row.light->absorbed); }},
+    {"sunlit", [](const PlantRow& row) { return six_decimals(row.light->sunlit); }},
 };
 /// The rest of the turtle's frame, which JSON has too.
 constexpr Column frame_columns[] = {

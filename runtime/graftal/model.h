@@ -113,7 +113,7 @@ struct PlantTable {
     std::vector<double> parameters; ///< parameter_count of each; those that a module has not are NaN
 };
 
-/// What measures() takes besides the model.
+/// Settings of measures().
 struct MeasureSettings {
     std::optional<double> ground_area; ///< above 0; nothing: the crown's convex hull, seen from above
     bool irradiance = false;           ///< the light on each organ, too
@@ -123,7 +123,8 @@ struct MeasureSettings {
 /// Measures of the plant that an L-system draws (docs/export.md).
 struct PlantReport {
     std::string json; ///< as `graftal stats --plant --json` prints it
-    /// Of irradiance: a row for each of plant(). An open horizontal plane has 1; NaN where nothing is known.
+    /// Light, if it was asked for: a row for each of plant(). An open horizontal plane has 1; NaN where
+    /// nothing is known.
     std::vector<float> lights, errors, absorbed, sunlit;
 };
 

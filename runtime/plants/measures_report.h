@@ -13,7 +13,7 @@ namespace graftal {
 /// null, is the light that the plant takes.
 std::string measures_json(std::string_view model, const PlantMeasures& measures, const PlantLight* light);
 
-/// The same for people: a line a key, and a table for each list.
+/// The text of it for people: a line a key, and a table for each list.
 std::string measures_text(std::string_view model, const PlantMeasures& measures, const PlantLight* light);
 
 /// A key of measures_text(): of a line, or "orders angle" for a column of a table.

@@ -39,7 +39,7 @@ struct PlantLight {
     LightAmount falls;              ///< on the plant before it meets anything else
     LightAmount absorbed;           ///< sum over organs
     LightAmount absorbed_by_leaves; ///< by blades
-    // The same light followed from organ to organ, by chance; together they are `falls`:
+    // Ends of the light that falls, followed from organ to organ, by chance; together they are `falls`:
     double taken = 0, to_sky = 0, to_ground = 0, left = 0;
     double sunlit_leaf_area = 0, shaded_leaf_area = 0;
     bool has_sun = false;

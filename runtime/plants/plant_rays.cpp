@@ -143,7 +143,7 @@ OrganSample PlantRays::sample(const OrganSurface& organ, std::uint64_t seed, std
     OrganSample sample;
     auto [point, normal] = organ.at(random.next());
     const double lift = std::max(gap_, organ.thickness());
-    // What is drawn there, as a ray meets it that comes from just outside.
+    // The ray from just outside meets what is drawn there.
     Finish finish;
     SurfaceHit hit;
     if (closest({point + lift * normal, -normal}, {0, 2 * lift}, hit)) {

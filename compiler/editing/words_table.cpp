@@ -87,6 +87,8 @@ constexpr Row rows[] = {
     {bit(P::rifs_map) | bit(P::rifs_part) | bit(P::orbit), {"probability", "probability: p", "How often random iteration takes this map."}},
     {bit(P::rifs_part) | bit(P::inst_body), {"below", "below: pixels", "Draws the terminal wherever the object measures at most so many pixels across."}},
     {bit(P::orbit), {"map", "map [NAME] { x = ...  y = ... }", "One of several maps, chosen at random."}},
+    {bit(P::orbit), {"final", "final { x = ...  y = ... }", "What is shown of each point; the orbit goes on from the point itself."}},
+    {bit(P::orbit), {"follow", "follow matrix { ROWS }", "A row for each map: factors of the probabilities of the maps after it."}},
     {bit(P::orbit), {"start", "start x, y [, z]", "The first point."}},
     {bit(P::orbit), {"skip", "skip n", "How many of the first points do not count; 100 if not given."}},
     {bit(P::orbit), {"x", "x = formula", "The new x; on the right, x, y and z are the old ones."}},

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/rifs/follow_ast.h"
 #include "compiler/rifs/look.h"
 #include "compiler/rifs/orbit_ast.h"
 #include "compiler/support/source.h"
@@ -20,8 +21,6 @@ namespace graftal {
 
 /// More maps than this in one file are refused while parsing.
 inline constexpr std::size_t max_rifs_maps = 100'000;
-/// More edges and matrix entries than this in one `follow` are refused while parsing.
-inline constexpr std::size_t max_rifs_edges = 4'000'000;
 
 /// `condense` and `terminal`: a primitive or used model, placed.
 struct RifsPart {
@@ -50,41 +49,6 @@ struct RifsMap {
     std::optional<Name> from; ///< the block whose attractor this map takes
     std::optional<RifsPart> terminal;
     bool broken = false; ///< reported while parsing: there is nothing to evaluate
-    Span span;
-};
-
-/// w_to may be applied after w_from.
-struct RifsEdge {
-    Name from;
-    Name to;
-};
-
-/// An entry of a control matrix; literal zeros are not kept. A matrix may have millions: plain numbers stand
-/// here, others in RifsFollow::expressions.
-struct RifsCell {
-    static constexpr std::uint32_t literal = UINT32_MAX;
-
-    std::uint32_t row = 0;
-    std::uint32_t column = 0;
-    double number = 0;
-    std::uint32_t expression = literal;
-    Span span;
-};
-
-struct RifsMatrixRow {
-    std::uint32_t columns = 0;
-    Span span;
-};
-
-struct RifsFollow {
-    /// all_except: all edges but `edges`; edges: those only.
-    enum class Kind : std::uint8_t { all, all_except_self, all_except, edges, matrix };
-
-    Kind kind = Kind::all;
-    std::vector<RifsEdge> edges;
-    std::vector<RifsMatrixRow> rows;
-    std::vector<RifsCell> cells; ///< row by row
-    std::vector<Expression> expressions;
     Span span;
 };
 

@@ -20,6 +20,7 @@ namespace graftal {
 namespace {
 
 constexpr double most_skipped = 1e9;
+constexpr double largest_factor = 1e6;      ///< of `follow`
 constexpr std::size_t most_words = 100'000; ///< of one formula, with all functions written out
 
 class OrbitLowering {
@@ -40,8 +41,11 @@ class OrbitLowering {
             diagnostics_.error(block_.name.span, fmt::format("'orbit {}' has no map", block_.name.text))
                 .with_hint("x = ...  y = ...");
         for (const OrbitMap& map : block_.maps)
-            lower_map(map, looks);
+            if (std::optional<OrbitFormulas> formulas = lower_map(map, looks))
+                model_.maps.push_back(std::move(*formulas));
         check_probabilities();
+        if (block_.last) model_.last = lower_map(*block_.last, looks);
+        if (block_.follow) lower_follow(*block_.follow);
         add_colours();
         return std::move(model_);
     }
@@ -140,7 +144,7 @@ class OrbitLowering {
             model_.skip = static_cast<std::uint64_t>(skip);
     }
 
-    void lower_map(const OrbitMap& map, RifsLooks& looks) {
+    std::optional<OrbitFormulas> lower_map(const OrbitMap& map, RifsLooks& looks) {
         OrbitFormulas formulas;
         formulas.name = map.name.text;
         formulas.span = map.span;
@@ -162,9 +166,9 @@ class OrbitLowering {
             if (coordinate && axis == 2) model_.flat = false;
             formulas.sources.push_back(coordinate ? expanded(*coordinate) : zero);
         }
-        if (diagnostics_.has_errors()) return;
+        if (diagnostics_.has_errors()) return std::nullopt;
         compile(formulas);
-        model_.maps.push_back(std::move(formulas));
+        return formulas;
     }
 
     /// Sources stay where they are when the formulas are moved: their vector's memory goes along.
@@ -173,10 +177,46 @@ class OrbitLowering {
         std::vector<std::string_view> visible = {"x", "y", "z"};
         for (std::size_t i = 0; i < formulas.sources.size(); ++i) {
             if (i > 0 && i <= own) visible.push_back(formulas.names[2 + i]);
+            std::uint32_t draws = 0;
             const auto code =
-                ExpressionCode::compile(formulas.sources[i], model_.lets, visible, diagnostics_);
+                ExpressionCode::compile(formulas.sources[i], model_.lets, visible, diagnostics_, &draws);
             if (!code) continue;
             formulas.codes.push_back(*code);
+            formulas.draws.push_back(draws);
+            formulas.all_draws += draws;
+        }
+    }
+
+    void lower_follow(const RifsFollow& follow) {
+        const std::size_t size = model_.maps.size();
+        if (diagnostics_.has_errors()) return;
+        const auto wrong = [&](const RifsMatrixRow& row) { return row.columns != size; };
+        if (const auto row = std::ranges::find_if(follow.rows, wrong);
+            row != follow.rows.end() || follow.rows.size() != size) {
+            const std::string maps = fmt::format("{} map{}", size, size == 1 ? "" : "s");
+            diagnostics_.error(
+                row != follow.rows.end() ? row->span : follow.span,
+                fmt::format("the matrix of 'orbit {}' needs {} rows of as many numbers, for it has {}",
+                            block_.name.text, size, maps));
+            return;
+        }
+        model_.follow.assign(size * size, 0);
+        for (const RifsCell& cell : follow.cells) {
+            double value = cell.number;
+            if (cell.expression != RifsCell::literal)
+                value = evaluate(follow.expressions[cell.expression], model_.lets, diagnostics_).value_or(0);
+            if (!(value >= 0 && value <= largest_factor))
+                diagnostics_.error(cell.span, fmt::format("an entry must lie between 0 and {}, not {}",
+                                                          shortest(largest_factor), shortest(value)));
+            model_.follow[cell.row * size + cell.column] = value;
+        }
+        for (std::size_t row = 0; row < size && !diagnostics_.has_errors(); ++row) {
+            double sum = 0;
+            for (std::size_t i = 0; i < size; ++i)
+                sum += model_.follow[row * size + i] * model_.maps[i].probability;
+            if (!(sum > 0))
+                diagnostics_.error(follow.rows[row].span,
+                                   fmt::format("no map may follow map {}: the orbit would end", row + 1));
         }
     }
 
@@ -201,6 +241,9 @@ class OrbitLowering {
         root.name = model_.name;
         for (const OrbitFormulas& map : model_.maps)
             root.instances.push_back({sphere, Affine(), map.tint, map.material, map.span});
+        if (model_.last)
+            root.instances.push_back(
+                {sphere, Affine(), model_.last->tint, model_.last->material, model_.last->span});
         model_.scene.root = model_.scene.add(std::move(root));
     }
 
@@ -248,35 +291,44 @@ void lower_orbit_file(const RifsFile& tree, Lowering& lowering) {
     lowering.notes.orbit = std::make_shared<const OrbitModel>(std::move(model));
 }
 
-std::optional<Vec3> apply(const OrbitFormulas& map, Vec3 point, std::vector<double>& slots) {
+std::optional<Vec3> apply(const OrbitFormulas& map, Vec3 point, std::span<const double> draws,
+                          std::vector<double>& slots) {
     const std::size_t own = map.codes.size() - 3;
-    slots.resize(3 + own);
+    slots.clear();
     for (int axis = 0; axis < 3; ++axis)
-        slots[static_cast<std::size_t>(axis)] = point[axis];
-    for (std::size_t i = 0; i < own; ++i) {
-        const std::optional<double> value = map.codes[i].value(std::span(slots).first(3 + i));
-        if (!value) return std::nullopt;
-        slots[3 + i] = *value;
-    }
+        slots.push_back(point[axis]);
     Vec3 result;
-    for (int axis = 0; axis < 3; ++axis) {
-        const std::optional<double> value = map.codes[own + static_cast<std::size_t>(axis)].value(slots);
+    for (std::size_t i = 0; i < map.codes.size(); ++i) {
+        // A formula finds its random numbers behind the names that it may use.
+        const std::size_t names = slots.size();
+        slots.insert(slots.end(), draws.begin(), draws.begin() + map.draws[i]);
+        draws = draws.subspan(map.draws[i]);
+        const std::optional<double> value = map.codes[i].value(slots);
         if (!value) return std::nullopt;
-        result[axis] = *value;
+        slots.resize(names);
+        if (i < own)
+            slots.push_back(*value);
+        else
+            result[static_cast<int>(i - own)] = *value;
     }
     return result;
 }
 
-void OrbitModel::report(std::size_t number, Vec3 point, Diagnostics& diagnostics) const {
-    const OrbitFormulas& map = maps[number];
+void OrbitModel::report(std::size_t number, Vec3 point, std::span<const double> draws,
+                        Diagnostics& diagnostics) const {
+    const OrbitFormulas& map = number < maps.size() ? maps[number] : *last;
     std::vector<double> slots;
     for (int axis = 0; axis < 3; ++axis)
         slots.push_back(point[axis]);
     std::vector<std::string_view> visible = {"x", "y", "z"};
     const std::size_t own = map.codes.size() - 3;
     for (std::size_t i = 0; i < map.codes.size(); ++i) {
+        const std::size_t names = slots.size();
+        slots.insert(slots.end(), draws.begin(), draws.begin() + map.draws[i]);
+        draws = draws.subspan(map.draws[i]);
         const std::optional<double> value = map.codes[i].value(slots);
         if (!value) return map.codes[i].report(slots, lets, visible, diagnostics);
+        slots.resize(names);
         if (i >= own) continue;
         slots.push_back(*value);
         visible.push_back(map.names[3 + i]);

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/rifs/follow_ast.h"
 #include "compiler/rifs/look.h"
 #include "compiler/support/source.h"
 #include "compiler/syntax/expression.h"
@@ -40,7 +41,9 @@ struct OrbitBlock {
     std::vector<OrbitLet> lets;
     std::vector<OrbitFunction> functions;
     std::vector<OrbitMap> maps;
-    std::vector<Expression> start; ///< none, two or three
+    std::optional<OrbitMap> last;     ///< `final`: of what is shown of each point
+    std::optional<RifsFollow> follow; ///< a matrix
+    std::vector<Expression> start;    ///< none, two or three
     std::optional<Expression> skip;
     Span span; ///< of the keyword and the name
 };

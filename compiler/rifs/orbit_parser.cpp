@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/rifs/parts.h"
+#include "compiler/rifs/tables.h"
 #include "compiler/syntax/expression_functions.h"
 #include "compiler/syntax/expression_parser.h"
 
@@ -52,10 +53,12 @@ class OrbitParser {
         if (stream_.at("start")) return parse_start();
         if (stream_.at("skip")) return parse_number(block_.skip);
         if (stream_.at("map")) return parse_map();
+        if (stream_.at("final") && !stream_.peek(1).is("(")) return parse_final();
+        if (stream_.at("follow") && !stream_.peek(1).is("(")) return parse_follow();
         if (stream_.at("let")) return parse_lets(block_.lets);
         if (stream_.at_name() && stream_.peek(1).is("(")) return parse_function();
         if (at_map_item()) return parse_map_item(sole_map());
-        return unknown("'map', 'x =', 'y =', 'start', 'skip', 'let', NAME(x) = or '}'",
+        return unknown("'map', 'x =', 'y =', 'final', 'follow', 'start', 'skip', 'let', NAME(x) = or '}'",
                        {orbit_words.begin(), orbit_words.end()});
     }
 
@@ -179,15 +182,47 @@ class OrbitParser {
             diagnostics_.error(map.span, fmt::format("more than {} maps", most_maps));
             return false;
         }
+        if (!parse_formulas(map, "'map'")) return false;
+        block_.maps.push_back(std::move(map));
+        return true;
+    }
+
+    bool parse_formulas(OrbitMap& map, const char* what) {
         const Token open = stream_.peek();
         if (!stream_.expect("{", stream_.previous().text)) return false;
-        parse_items("'map'", open, [&] {
+        parse_items(what, open, [&] {
             if (stream_.at("let")) return parse_lets(map.lets);
             if (at_map_item()) return parse_map_item(map);
             return unknown("'x =', 'y =', 'let', 'probability', 'tint', 'material' or '}'",
                            {"x", "y", "z", "let", "probability", "tint", "material"});
         });
-        block_.maps.push_back(std::move(map));
+        return true;
+    }
+
+    bool parse_final() {
+        const Token keyword = stream_.next();
+        OrbitMap last;
+        last.name = {keyword.text, keyword.span};
+        last.span = keyword.span;
+        if (block_.last) return duplicate(keyword, block_.last->span);
+        if (!parse_formulas(last, "'final'")) return false;
+        if (last.probability)
+            diagnostics_.error(last.probability->span, "'final' maps every point: it has no probability");
+        block_.last = std::move(last);
+        return true;
+    }
+
+    bool parse_follow() {
+        const Token keyword = stream_.peek();
+        if (block_.follow) {
+            stream_.next();
+            return duplicate(keyword, block_.follow->span);
+        }
+        block_.follow = parse_rifs_follow(stream_);
+        if (!block_.follow) return false;
+        if (block_.follow->kind != RifsFollow::Kind::matrix)
+            diagnostics_.error(block_.follow->span, "an orbit takes 'follow matrix { ... }'")
+                .with_hint("write a row for each map: the factors of the probabilities of those after it");
         return true;
     }
 

@@ -19,11 +19,18 @@ class OrbitSource::Stream : public PointStream {
             if (!step()) return false;
         for (ChaosPoint& point : points) {
             if (!step()) return false;
-            const Rgb base = base_;
+            Rgb base = base_;
+            Paint paint = paint_;
             point.place = place_;
+            if (const auto& last = source_.model_.last) {
+                const std::optional<Vec3> shown = mapped(*last, source_.model_.maps.size());
+                if (!shown) return false;
+                point.place = *shown;
+                look(*last, paint, base);
+            }
             for (int k = 0; k < 3; ++k)
                 point.rgb[k] =
-                    paint_.fixed[static_cast<std::size_t>(k)] + paint_.open * static_cast<float>(base[k]);
+                    paint.fixed[static_cast<std::size_t>(k)] + paint.open * static_cast<float>(base[k]);
             point.map = static_cast<std::uint32_t>(map_ + 1);
         }
         return true;
@@ -31,19 +38,31 @@ class OrbitSource::Stream : public PointStream {
 
   private:
     bool step() {
-        const OrbitModel& model = source_.model_;
-        map_ = source_.single() ? 0 : source_.tables_.choose(source_.choice_, random_.bits());
-        const OrbitFormulas& map = model.maps[map_];
-        const std::optional<Vec3> next = apply(map, place_, slots_);
+        const std::size_t state = steps_ > 0 && source_.choices_.size() > 1 ? map_ + 1 : 0;
+        map_ = source_.single() ? 0 : source_.tables_.choose(source_.choices_[state], random_.bits());
         ++steps_;
-        if (!next || !near(*next)) {
-            source_.note({number_, steps_, map_, place_, next.has_value()});
-            return false;
-        }
+        const OrbitFormulas& map = source_.model_.maps[map_];
+        const std::optional<Vec3> next = mapped(map, map_);
+        if (!next) return false;
         place_ = *next;
-        if (map.tint.alpha > 0) paint_ = paint_.under(Paint(PathTint(map.tint)));
-        if (map.material) base_ = model.scene.materials[*map.material].rgb;
+        look(map, paint_, base_);
         return true;
+    }
+
+    /// The image of the point; nothing, and a note, where it goes astray.
+    std::optional<Vec3> mapped(const OrbitFormulas& map, std::size_t number) {
+        draws_.resize(map.all_draws);
+        for (double& draw : draws_)
+            draw = random_.unit();
+        const std::optional<Vec3> image = apply(map, place_, draws_, slots_);
+        if (image && near(*image)) return image;
+        source_.note({number_, steps_, number, place_, image.has_value(), draws_});
+        return std::nullopt;
+    }
+
+    void look(const OrbitFormulas& map, Paint& paint, Rgb& base) const {
+        if (map.tint.alpha > 0) paint = paint.under(Paint(PathTint(map.tint)));
+        if (map.material) base = source_.model_.scene.materials[*map.material].rgb;
     }
 
     static bool near(Vec3 p) {
@@ -58,14 +77,20 @@ class OrbitSource::Stream : public PointStream {
     Rgb base_ = Material{}.rgb;
     std::size_t map_ = 0;
     std::uint64_t steps_ = 0;
-    std::vector<double> slots_;
+    std::vector<double> draws_, slots_;
 };
 
 OrbitSource::OrbitSource(const OrbitModel& model, std::uint64_t seed) : model_(model), seed_(seed) {
     std::vector<double> weights;
     for (const OrbitFormulas& map : model.maps)
         weights.push_back(map.probability);
-    choice_ = tables_.add(weights);
+    choices_.push_back(tables_.add(weights));
+    for (std::size_t row = 0; row * weights.size() < model.follow.size(); ++row) {
+        std::vector<double> after = weights;
+        for (std::size_t i = 0; i < after.size(); ++i)
+            after[i] *= model.follow[row * weights.size() + i];
+        choices_.push_back(tables_.add(after));
+    }
 }
 
 std::unique_ptr<PointStream> OrbitSource::stream(std::uint64_t number) const {
@@ -94,12 +119,12 @@ void OrbitSource::note(const Astray& astray) const {
 bool OrbitSource::report(Diagnostics& diagnostics) const {
     if (!astray_) return false;
     if (!astray_->has_value) {
-        model_.report(astray_->map, astray_->before, diagnostics);
+        model_.report(astray_->map, astray_->before, astray_->draws, diagnostics);
         return true;
     }
     const Vec3 p = astray_->before;
     diagnostics
-        .error(model_.maps[astray_->map].span,
+        .error(astray_->map < model_.maps.size() ? model_.maps[astray_->map].span : model_.last->span,
                fmt::format(
                    "the orbit diverges: in step {} it goes from <{}, {}{}> farther than {} from the origin",
                    astray_->steps, shortest(p.x), shortest(p.y), model_.flat ? "" : ", " + shortest(p.z),

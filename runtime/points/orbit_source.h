@@ -2,6 +2,7 @@
 
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "compiler/rifs/orbit_model.h"
 #include "compiler/support/bounds.h"
@@ -27,9 +28,10 @@ class OrbitSource : public PointSource {
     struct Astray {
         std::uint64_t stream = 0;
         std::uint64_t steps = 0;
-        std::size_t map = 0;
+        std::size_t map = 0; ///< OrbitModel::report()'s
         Vec3 before{0.0};
         bool has_value = false; ///< but too far away
+        std::vector<double> draws;
     };
 
     void note(const Astray& astray) const;
@@ -37,7 +39,7 @@ class OrbitSource : public PointSource {
     const OrbitModel& model_;
     std::uint64_t seed_;
     AliasTables tables_;
-    AliasTables::Range choice_;
+    std::vector<AliasTables::Range> choices_; ///< of the first map, then of those after each
     mutable std::mutex noting_;
     mutable std::optional<Astray> astray_;
 };

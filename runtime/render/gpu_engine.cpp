@@ -32,8 +32,8 @@ class GpuDrawing {
   public:
     GpuDrawing(const PreparedView& prepared, const RenderOptions& options, const CancelFlag& cancel)
         : prepared_(prepared), view_(prepared.viewed->view), options_(options), cancel_(cancel),
-          plan_(plan_picture(prepared, options)), window_(window_of(options, view_.size)),
-          file_(options), film_(options.film ? *options.film : file_) {
+          plan_(plan_picture(prepared, options)), window_(window_of(options, view_.size)), file_(options),
+          film_(options.film ? *options.film : file_) {
         picture_.width = window_.width;
         picture_.height = window_.height;
         picture_.channels = 3;
@@ -187,7 +187,9 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
     if (!compilation.status.ok()) return std::nullopt;
     const CancelFlag cancel = session.control().cancel;
     GpuDrawing drawing(prepared, options, cancel);
-    std::string why = options.aovs ? "'--aovs' names what each sample meets" : options.device ? "" : why_no_card();
+    std::string why = options.aovs     ? "'--aovs' names what each sample meets"
+                      : options.device ? ""
+                                       : why_no_card();
     std::optional<FlatModel> model;
     if (why.empty()) model = drawing.flat(why);
     if (model) {

@@ -308,8 +308,8 @@ std::optional<NativeReport> trace_model(const PreparedView& prepared, const Rend
     const View& view = prepared.viewed->view;
     if (options.fit) return trace_fitted(prepared, options, preparing, cancel, compilation);
     PicturePlan plan = plan_picture(prepared, options);
-    // The edges of a part would differ from those of the whole. Coverage and mattes, which are never denoised,
-    // must fit the light.
+    // The edges of a part would differ from those of the whole. Coverage and mattes, which are never
+    // denoised, must fit the light.
     if (options.tile || (options.needs_aovs() && !options.denoise)) plan.wanted.denoise = false;
     FileFilm file(options);
     Drawing drawing(prepared, options, options.film ? *options.film : file, cancel);

@@ -23,8 +23,8 @@ struct MatteShare {
     float share = 0;
 };
 
-/// The largest shares of a pixel, in falling order, equal ones by their ids; the rest are 0. What does not fit
-/// in is left out.
+/// The largest shares of a pixel, in falling order, equal ones by their ids; the rest are 0. What does not
+/// fit in is left out.
 using MatteShares = std::array<MatteShare, 6>;
 
 /// Shares of a pixel, of its objects and of its materials.

@@ -393,7 +393,7 @@ class Worker {
     Tile window_;
     AovPicture* aovs_ = nullptr;      ///< null: none are wanted
     const CutGraph* named_ = nullptr; ///< null: no mattes are
-    AovSample seen_;             ///< by the last look, if they are
+    AovSample seen_;                  ///< by the last look, if they are
     std::vector<AovSum> aov_sums_;
 };
 

@@ -52,6 +52,15 @@ std::string stretch_text(const Affine& map) {
                        entry(glm::dot(up, up)));
 }
 
+/// Whether nothing is seen of a part: its thickness of 1 is so much larger than it that the language would
+/// call its map flat.
+bool is_unseen(const Affine& map) {
+    constexpr double least_width = 1e-11;
+    const glm::dvec2 across(map.linear[0]), up(map.linear[1]);
+    const double area = std::abs(across.x * up.y - across.y * up.x);
+    return !(area > least_width * std::hypot(glm::length(across), glm::length(up)));
+}
+
 } // namespace
 
 Unfolding::Unfolding(const ForeignFile& file, const Grammar& grammar)
@@ -372,7 +381,7 @@ Change Unfolding::expand_even(const Element& loop, const Surroundings& at, const
     std::size_t part = part_of(under.node, under.change);
     expand(loop.body, at, {part, {}});
     const auto place_part = [&](std::size_t in, const Change& change) {
-        if (!check_bounds(change.map, loop.span)) return;
+        if (is_unseen(change.map) || !check_bounds(change.map, loop.span)) return;
         add_line(in, {.node = part, .map = change.map, .colours = change.colours, .span = loop.span});
         see(nodes_[in].world * change.map);
     };
@@ -463,9 +472,10 @@ void Unfolding::place(const Element& element, const Surroundings& at, const Unde
     const auto found = grammar_.numbers.find(shape->name);
     const bool primitive_shape = found == grammar_.numbers.end();
     const bool fills = primitive_shape && primitive_named(shape->name).empty();
-    const double size = size_of(change.map);
-    if (!(size > 1e-90)) return; // nothing is seen of it
-    if (!check_bounds(change.map, element.span)) return;
+    if (is_unseen(change.map)) return;
+    if (!check_bounds(change.map, element.span) ||
+        !check_bounds(nodes_[under.node].world * change.map, element.span))
+        return;
     Target target = nodes_[under.node].target;
     if (!ink_text(change.colours, target))
         return fail(element.span, "this changes a colour away from another");

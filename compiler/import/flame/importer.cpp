@@ -211,14 +211,6 @@ class Writer {
 
     bool write_orbit(const Map* growing) {
         bool good = true;
-        const auto fail = [&](Span span, std::string message) {
-            file_.diagnostics.error(span, std::move(message));
-            good = false;
-        };
-        if (flame_.last)
-            fail(flame_.last->span, "a 'finalxform' of a flame that is no limit set is not translated");
-        for (const Map& map : flame_.maps)
-            if (map.steers()) fail(map.span, "'chaos' in a flame that is no limit set is not translated");
         if (growing)
             file_.diagnostics
                 .warning(growing->span,
@@ -227,15 +219,42 @@ class Writer {
         write_camera();
         out_.line(fmt::format("orbit {} {{", name_));
         out_.line(fmt::format("  start {}, {}", start_x, start_y));
+        std::vector<std::size_t> branches;
         for (const Map& map : flame_.maps)
-            good = write_map(map) && good;
+            good = write_map(map, branches) && good;
+        if (std::ranges::any_of(flame_.maps, &Map::steers)) write_factors(branches);
+        if (flame_.last) good = write_last(*flame_.last) && good;
         out_.line("}");
         return good;
     }
 
-    bool write_map(const Map& map) {
-        // Variations with two branches make maps for each choice.
-        std::vector<std::vector<std::pair<double, Formula>>> choices = {{}};
+    /// Rows of `chaos` for the maps of the orbit; the branches of a flame's map are alike.
+    void write_factors(const std::vector<std::size_t>& branches) {
+        out_.line("  follow matrix {   # 'chaos'");
+        for (std::size_t i = 0; i < branches.size(); ++i) {
+            std::string row = "   ";
+            for (std::size_t j = 0; j < branches.size(); ++j)
+                for (std::size_t branch = 0; branch < branches[j]; ++branch)
+                    row += " " + number(chaos(i, j));
+            for (std::size_t branch = 0; branch < branches[i]; ++branch)
+                out_.line(row, flame_.maps[i].span);
+        }
+        out_.line("  }");
+    }
+
+    /// A variation of a map.
+    struct Term {
+        double weight = 0;
+        Formula formula;
+        bool first = false; ///< comes_first()
+    };
+    /// One of the equally likely ways through a map.
+    using Way = std::vector<Term>;
+
+    /// Variations with two branches make ways of each. None after an error.
+    std::vector<Way> ways_of(const Map& map) const {
+        std::vector<Way> ways = {{}};
+        int variation_number = 0;
         for (const auto& [variation, weight] : map.variations) {
             const Setting setting{
                 .pre = map.pre, .weight = weight, .number = [&](const std::string& name, double otherwise) {
@@ -243,55 +262,110 @@ class Writer {
                     return known == map.numbers.end() ? otherwise : known->second;
                 }};
             const std::vector<Formula> formulas = formulas_of(variation, setting);
-            if (formulas.empty() || choices.size() * formulas.size() > most_branches) {
+            if (formulas.empty() || ways.size() * formulas.size() > most_branches) {
                 file_.diagnostics.error(map.span,
                                         fmt::format("the variation '{}' is not translated", variation));
-                return false;
+                return {};
             }
-            std::vector<std::vector<std::pair<double, Formula>>> more;
-            for (const auto& choice : choices)
+            const std::string mark = std::to_string(++variation_number);
+            std::vector<Way> more;
+            for (const Way& way : ways)
                 for (const Formula& formula : formulas) {
-                    more.push_back(choice);
-                    more.back().emplace_back(weight, formula);
+                    more.push_back(way);
+                    more.back().push_back({weight, marked(formula, mark), comes_first(variation)});
                 }
-            choices = std::move(more);
+            ways = std::move(more);
         }
-        for (const auto& choice : choices) {
+        return ways;
+    }
+
+    /// The formula whose random numbers have names of their own.
+    static Formula marked(Formula formula, const std::string& mark) {
+        for (std::string* const text : {&formula.x, &formula.y, &formula.draws})
+            for (std::size_t at = text->find('#'); at != std::string::npos; at = text->find('#', at))
+                text->replace(at, 1, mark);
+        return formula;
+    }
+
+    /// The weighted sum of the terms, those that come first or the others.
+    static std::string sum_of(const Way& way, bool first, std::string Formula::*axis) {
+        std::string sum;
+        for (const Term& term : way)
+            if (term.first == first)
+                sum += fmt::format("{}({}) * ({})", sum.empty() ? "" : " + ", number(term.weight),
+                                   term.formula.*axis);
+        return sum;
+    }
+
+    /// The lines of one way up to `p` and `q`, its image before the map's `post`.
+    void write_way(const Map& map, const Way& way) {
+        for (const Term& term : way)
+            if (!term.formula.draws.empty()) out_.line("    let " + term.formula.draws);
+        const auto before = [&](std::size_t axis, double translation, std::string Formula::*formula) {
+            const std::string moved = sum_of(way, true, formula);
+            return fmt::format("({}) * x + ({}) * y + ({}){}", number(map.pre.linear[0][axis]),
+                               number(map.pre.linear[1][axis]), number(translation),
+                               moved.empty() ? "" : " + " + moved);
+        };
+        out_.line("    let u = " + before(0, map.pre.translation.x, &Formula::x));
+        out_.line("    let v = " + before(1, map.pre.translation.y, &Formula::y));
+        if (!map.is_affine()) {
+            out_.line("    let r2 = u*u + v*v");
+            out_.line("    let r = sqrt(r2)");
+            out_.line("    let theta = pi / 180 * atan2(u, v)");
+        }
+        const auto sum_or_zero = [&](std::string Formula::*axis) {
+            const std::string sum = sum_of(way, false, axis);
+            return sum.empty() ? std::string("0") : sum;
+        };
+        out_.line("    let p = " + sum_or_zero(&Formula::x));
+        out_.line("    let q = " + sum_or_zero(&Formula::y));
+        out_.line("    let near = abs(p) < 1e10 && abs(q) < 1e10");
+    }
+
+    /// The new coordinates; `far_x` and `far_y` of a point that runs away.
+    void write_image(const Affine& post, const char* far_x, const char* far_y) {
+        const auto after = [&](std::size_t axis, double translation, const char* unmoved) {
+            if (post == Affine()) return std::string(unmoved);
+            return fmt::format("({}) * p + ({}) * q + ({})", number(post.linear[0][axis]),
+                               number(post.linear[1][axis]), number(translation));
+        };
+        out_.line(fmt::format("    x = choose(near, {}, {})", after(0, post.translation.x, "p"), far_x));
+        out_.line(fmt::format("    y = choose(near, {}, {})", after(1, post.translation.y, "q"), far_y));
+    }
+
+    /// Maps of the orbit, one for each way, whose number is added to `branches`.
+    bool write_map(const Map& map, std::vector<std::size_t>& branches) {
+        const std::vector<Way> ways = ways_of(map);
+        for (const Way& way : ways) {
             out_.line("  map {", map.span);
-            const Affine& pre = map.pre;
-            out_.line(fmt::format("    let u = ({}) * x + ({}) * y + ({})", number(pre.linear[0][0]),
-                                  number(pre.linear[1][0]), number(pre.translation.x)));
-            out_.line(fmt::format("    let v = ({}) * x + ({}) * y + ({})", number(pre.linear[0][1]),
-                                  number(pre.linear[1][1]), number(pre.translation.y)));
-            if (!map.is_affine()) {
-                out_.line("    let r2 = u*u + v*v");
-                out_.line("    let r = sqrt(r2)");
-                out_.line("    let theta = pi / 180 * atan2(u, v)");
-            }
-            std::string x, y;
-            for (const auto& [weight, formula] : choice) {
-                const std::string sign = x.empty() ? "" : " + ";
-                x += fmt::format("{}({}) * ({})", sign, number(weight), formula.x);
-                y += fmt::format("{}({}) * ({})", sign, number(weight), formula.y);
-            }
-            // A point that runs away begins anew, as in flam3.
-            out_.line("    let p = " + x);
-            out_.line("    let q = " + y);
-            out_.line("    let near = abs(p) < 1e10 && abs(q) < 1e10");
-            const Affine& post = map.post;
-            const auto after = [&](std::size_t axis, double translation, const char* unmoved) {
-                if (post == Affine()) return std::string(unmoved);
-                return fmt::format("({}) * p + ({}) * q + ({})", number(post.linear[0][axis]),
-                                   number(post.linear[1][axis]), number(translation));
-            };
-            out_.line(
-                fmt::format("    x = choose(near, {}, {})", after(0, post.translation.x, "p"), start_x));
-            out_.line(
-                fmt::format("    y = choose(near, {}, {})", after(1, post.translation.y, "q"), start_y));
+            write_way(map, way);
+            write_image(map.post, start_x, start_y); // it begins anew, as in flam3
             out_.line(fmt::format("    probability {}{}",
-                                  number(map.weight / static_cast<double>(choices.size())), tint(map)));
+                                  number(map.weight / static_cast<double>(ways.size())), tint(map)));
             out_.line("  }");
         }
+        branches.push_back(ways.size());
+        return !ways.empty();
+    }
+
+    /// What is shown of each point. There is no chance among blocks: a random number chooses among ways.
+    bool write_last(const Map& map) {
+        std::vector<Way> ways = ways_of(map);
+        if (ways.empty()) return false;
+        Way all = ways.front();
+        for (std::size_t i = 0; i < all.size(); ++i)
+            for (std::string Formula::*const axis : {&Formula::x, &Formula::y}) {
+                std::string& text = all[i].formula.*axis;
+                for (std::size_t way = 1; way < ways.size(); ++way)
+                    text = fmt::format("choose(way < {}, {}, {})", way, text, ways[way][i].formula.*axis);
+            }
+        out_.line("  final {", map.span);
+        if (ways.size() > 1) out_.line(fmt::format("    let way = random(0, {})", ways.size()));
+        write_way(map, all);
+        write_image(map.post, "1e10", "1e10");
+        if (const std::string shade = tint(map); !shade.empty()) out_.line("  " + shade);
+        out_.line("  }");
         return true;
     }
 

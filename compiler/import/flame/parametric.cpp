@@ -27,6 +27,7 @@ struct Row {
     std::vector<Part> numbers; ///< their names follow that of the variation in the file: `curl_c1`
     std::vector<Part> steps;   ///< used by those below and by the formulas
     std::string_view x, y;
+    std::vector<Part> draws = {}; ///< random numbers, each the same wherever it is used
 };
 
 /// Steps that several variations share. `u` and `v` are the point behind the affine part, `w` is the weight,
@@ -279,7 +280,108 @@ const std::vector<Row>& rows() {
           {"n", "c*c + d*d"}},
          "(a * c + b * d) / n",
          "(b * c - a * d) / n"},
+        {"ngon",
+         {{"sides", "5"}, {"power", "3"}, {"circle", "1"}, {"corners", "2"}},
+         {{"b", "2*pi / sides"},
+          {"t", "phi - b * floor(phi / b)"},
+          {"a", "choose(t > b / 2, t - b, t)"},
+          {"n", "(corners * (1 / (cos(deg * a) + 1e-10) - 1) + circle) / (r2^(power / 2) + 1e-10)"}},
+         "n * u",
+         "n * v"},
+        {"pie",
+         {{"slices", "6"}, {"rotation", "0"}, {"thickness", "0.5"}},
+         {{"a", "rotation + 2*pi * (floor(slice + 0.5) + thickness * part) / slices"}},
+         "far * cos(deg * a)",
+         "far * sin(deg * a)",
+         {{"slice", "random(0, slices)"}, {"part", "random(0, 1)"}, {"far", "random(0, 1)"}}},
+        {"radial_blur",
+         {{"angle", "0"}},
+         {{"a", "phi + sin(90 * angle) * w * gauss"}, {"n", "cos(90 * angle) * w * gauss - 1"}},
+         "(r * cos(deg * a) + n * u) / w",
+         "(r * sin(deg * a) + n * v) / w",
+         {{"gauss", "random(0, 1) + random(0, 1) + random(0, 1) + random(0, 1) - 2"}}},
+        {"arch",
+         {},
+         {{"s", "sin(deg * w * turn)"}},
+         "s",
+         "s*s / cos(deg * w * turn)",
+         {{"turn", "random(0, pi)"}}},
+        {"rays",
+         {},
+         {{"n", "w * tan(deg * w * turn) / (r2 + 1e-10)"}},
+         "n * cosu",
+         "n * sinv",
+         {{"turn", "random(0, pi)"}}},
+        {"blade",
+         {},
+         {{"s", "sin(deg * w * r * far)"}, {"c", "cos(deg * w * r * far)"}},
+         "u * (c + s)",
+         "u * (c - s)",
+         {{"far", "random(0, 1)"}}},
+        {"twintrian",
+         {},
+         {{"s", "sin(deg * w * r * far)"},
+          {"n", "max(-30, log(max(1e-30, s*s)) / 2.302585092994046 + cos(deg * w * r * far))"}},
+         "u * n",
+         "u * (n - pi * s)",
+         {{"far", "random(0, 1)"}}},
+        {"flower",
+         {{"holes", "0"}, {"petals", "0"}},
+         {{"n", "(far - holes) * cos(deg * petals * phi) / (r + 1e-10)"}},
+         "n * u",
+         "n * v",
+         {{"far", "random(0, 1)"}}},
+        {"conic",
+         {{"eccentricity", "1"}, {"holes", "0"}},
+         {{"n", "(far - holes) * eccentricity / (r + eccentricity * u + 1e-10)"}},
+         "n * u",
+         "n * v",
+         {{"far", "random(0, 1)"}}},
+        {"parabola",
+         {{"width", "0"}, {"height", "0"}},
+         {{"s", "sin(deg * r)"}},
+         "height * s*s * high",
+         "width * cos(deg * r) * wide",
+         {{"high", "random(0, 1)"}, {"wide", "random(0, 1)"}}},
+        {"cpow",
+         {{"r", "1"}, {"i", "0"}, {"power", "1"}},
+         {{"a", "(r * phi + i * log(r2) / 2 + 2*pi * floor(turn)) / power"},
+          {"n", "exp((r * log(r2) / 2 - i * phi) / power)"}},
+         "n * cos(deg * a)",
+         "n * sin(deg * a)",
+         {{"turn", "random(0, power)"}}},
+        {"super_shape",
+         {{"m", "0"}, {"n1", "1"}, {"n2", "1"}, {"n3", "1"}, {"rnd", "0"}, {"holes", "0"}},
+         {{"t", "m / 4 * phi + pi / 4"},
+          {"c", "abs(cos(deg * t))^n2 + abs(sin(deg * t))^n3"},
+          {"n", "(rnd * far + (1 - rnd) * r - holes) * c^(-1 / n1) / (r + 1e-10)"}},
+         "n * u",
+         "n * v",
+         {{"far", "random(0, 1)"}}},
+        {"boarders",
+         {},
+         {{"i", "floor(u + 0.5)"},
+          {"j", "floor(v + 0.5)"},
+          {"d", "u - i"},
+          {"h", "v - j"},
+          {"a", "choose(d >= 0, 1/4, -1/4)"},
+          {"b", "choose(h >= 0, 1/4, -1/4)"}},
+         "i + d / 2 + choose(far >= 3/4, 0, choose(abs(d) >= abs(h), a, b * d / (h + (h == 0))))",
+         "j + h / 2 + choose(far >= 3/4, 0, choose(abs(d) >= abs(h), a * h / (d + (d == 0)), b))",
+         {{"far", "random(0, 1)"}}},
         // JWildfire's formulas, in the plane.
+        {"twoface", {}, {{"n", "choose(u > 0, 1 / (r2 + 1e-10), 1)"}}, "n * u", "n * v"},
+        {"funnel",
+         {{"effect", "8"}},
+         {},
+         "sinhu / coshu * (1 / cosu + effect * pi)",
+         "sinhv / coshv * (1 / cosv + effect * pi)"},
+        {"epispiral",
+         {{"n", "6"}, {"thickness", "0"}, {"holes", "1"}},
+         {{"m", "choose(thickness == 0, 1, thickness * far) / cos(deg * n * phi) - holes"}},
+         "m * cos(deg * phi)",
+         "m * sin(deg * phi)",
+         {{"far", "random(0, 1)"}}},
         {"spherical3D", {}, {}, "u / (r2 + 1e-10)", "v / (r2 + 1e-10)"},
         {"petal", {}, {}, "cosu * (cosu * cosv)^3", "cosu * (sinu * cosv)^3"},
         {"henon", {{"a", "0.5"}, {"b", "1"}, {"c", "1"}}, {}, "c - a * u*u + v", "b * u"},
@@ -339,6 +441,8 @@ class Text {
             const auto found = std::ranges::find(steps, word, &Part::name);
             return found == steps.end() ? std::string() : fmt::format("({})", of(found->text));
         };
+        if (std::ranges::find(row_.draws, word, &Part::name) != row_.draws.end())
+            return std::string(word) + "#"; // Formula::draws
         if (std::string step = in(row_.steps); !step.empty()) return step;
         if (const auto value = values_.find(word); value != values_.end()) return value->second;
         if (std::string step = in(shared); !step.empty()) return word == "deg" ? "57.29577951308232" : step;
@@ -368,7 +472,10 @@ std::vector<Formula> parametric_formulas(std::string_view variation, const Setti
     std::vector<Formula> formulas;
     for (int branch = 0; branch < branches; ++branch) {
         const Text text(*row, setting, branch);
-        formulas.push_back({text.of(row->x), text.of(row->y)});
+        std::string draws;
+        for (const Part& draw : row->draws)
+            draws += fmt::format("{}{}# = {}", draws.empty() ? "" : ", ", draw.name, text.of(draw.text));
+        formulas.push_back({text.of(row->x), text.of(row->y), draws});
     }
     return formulas;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -23,6 +22,12 @@ std::string sine(const std::string& radians) {
 std::string cosine(const std::string& radians) {
     return fmt::format("cos({} * ({}))", degrees, radians);
 }
+
+/// A random turn, and a random length: up to 1, or by four numbers nearly a normal one.
+const char* const draws_of_blur = "turn# = random(0, 360), far# = random(0, 1)";
+const char* const draws_of_gauss =
+    "turn# = random(0, 360), far# = random(0, 1) + random(0, 1) + random(0, 1) + "
+    "random(0, 1) - 2";
 
 using Maker = std::vector<Formula> (*)(const Affine&);
 
@@ -157,6 +162,36 @@ const std::map<std::string_view, Maker, std::less<>>& formula_table() {
          [](const Affine&) {
              return std::vector<Formula>{{"u / sqrt(r2 + 1)", "v / sqrt(r2 + 1)"}};
          }},
+        {"blur",
+         [](const Affine&) {
+             return std::vector<Formula>{{"far# * cos(turn#)", "far# * sin(turn#)", draws_of_blur}};
+         }},
+        {"gaussian_blur",
+         [](const Affine&) {
+             return std::vector<Formula>{{"far# * cos(turn#)", "far# * sin(turn#)", draws_of_gauss}};
+         }},
+        {"pre_blur",
+         [](const Affine&) {
+             return std::vector<Formula>{{"far# * cos(turn#)", "far# * sin(turn#)", draws_of_gauss}};
+         }},
+        {"pre_gaussian_blur",
+         [](const Affine&) {
+             return std::vector<Formula>{{"far# * cos(turn#)", "far# * sin(turn#)", draws_of_gauss}};
+         }},
+        {"noise",
+         [](const Affine&) {
+             return std::vector<Formula>{{"u * far# * cos(turn#)", "v * far# * sin(turn#)", draws_of_blur}};
+         }},
+        {"sineblur",
+         [](const Affine&) {
+             return std::vector<Formula>{{"far# * cos(turn#)", "far# * sin(turn#)",
+                                          "turn# = random(0, 360), far# = acos(random(-1, 1)) / 180"}};
+         }},
+        {"square",
+         [](const Affine&) {
+             return std::vector<Formula>{
+                 {"across#", "up#", "across# = random(-1/2, 1/2), up# = random(-1/2, 1/2)"}};
+         }},
         {"cross",
          [](const Affine&) {
              return std::vector<Formula>{{"u / (abs(u*u - v*v) + 1e-10)", "v / (abs(u*u - v*v) + 1e-10)"}};
@@ -173,6 +208,10 @@ std::vector<Formula> formulas_of(std::string_view variation, const Setting& sett
                                           : found->second(setting.pre);
 }
 
+bool comes_first(std::string_view variation) {
+    return variation == "pre_blur" || variation == "pre_gaussian_blur";
+}
+
 bool leaves_the_plane(std::string_view name) {
     static constexpr std::array<std::string_view, 8> names = {
         "flatten", "pre_flatten", "post_flatten", "zscale", "zcone", "ztranslate", "zblur", "pre_zscale"};
@@ -180,11 +219,7 @@ bool leaves_the_plane(std::string_view name) {
 }
 
 bool is_variation(std::string_view name) {
-    static const std::set<std::string_view> others = {
-        "noise",  "blur",   "gaussian_blur", "radial_blur", "pie",       "ngon",
-        "arch",   "square", "rays",          "blade",       "twintrian", "super_shape",
-        "flower", "conic",  "parabola",      "boarders",    "cpow",      "pre_blur"};
-    return formula_table().contains(name) || is_parametric(name) || others.contains(name);
+    return formula_table().contains(name) || is_parametric(name);
 }
 
 } // namespace graftal::flame

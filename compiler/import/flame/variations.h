@@ -13,6 +13,9 @@ namespace graftal::flame {
 /// distance from the origin, r2, its square, and theta, the angle atan2(x, y) in radians.
 struct Formula {
     std::string x, y;
+    /// Random numbers that both read, as `NAME# = number, ...`, each `#` a number of the variation's own; or
+    /// "".
+    std::string draws = {};
 };
 
 /// The values that a variation may read besides the point.
@@ -23,9 +26,11 @@ struct Setting {
     std::function<double(const std::string& name, double otherwise)> number;
 };
 
-/// One for each equally likely branch: `julia` has two. Empty if the variation has no formula here, for it is
-/// unknown or draws random numbers.
+/// One for each equally likely branch: `julia` has two. Empty if the variation has no formula here.
 std::vector<Formula> formulas_of(std::string_view variation, const Setting& setting);
+
+/// Whether it moves the point before all others of its map read it: its formula is then what it adds.
+bool comes_first(std::string_view variation);
 
 /// Whether it moves points off the plane only, as `flatten`: it changes nothing here.
 bool leaves_the_plane(std::string_view name);

@@ -13,6 +13,7 @@
 #include "compiler/import/own_words.h"
 #include "compiler/import/spectral_radius.h"
 #include "compiler/support/number.h"
+#include "compiler/support/path_text.h"
 #include "compiler/support/small_letters.h"
 
 namespace graftal {
@@ -73,6 +74,34 @@ std::vector<Line> lines_of(std::string_view text, std::size_t begin, std::size_t
     return lines;
 }
 
+/// Numbers on a line of nothing else; none: there is something else, or nothing.
+std::size_t numbers_on(std::string_view words) {
+    std::size_t count = 0;
+    for (;; ++count) {
+        words = words.substr(std::min(words.find_first_not_of(" \t\f\x1a,"), words.size()));
+        if (words.empty()) return count;
+        const LeadingNumber number = leading_number(words.starts_with('+') ? words.substr(1) : words);
+        if (number.length == 0) return 0;
+        words.remove_prefix(number.length + words.starts_with('+'));
+        if (!words.empty() && std::string_view(" \t\f,").find(words.front()) == std::string_view::npos)
+            return 0;
+    }
+}
+
+/// Numbers of each row where a text is a table without a name and braces, as Fractint's first versions had
+/// it: 6 or 7 in the plane, 12 or 13 in space. Nothing for other texts.
+std::optional<std::size_t> bare_columns(std::string_view text) {
+    std::optional<std::size_t> columns;
+    for (const Line& line : lines_of(text, 0, text.size())) {
+        if (trimmed(line.words).empty()) continue;
+        const std::size_t count = numbers_on(line.words);
+        if (count != columns.value_or(count)) return std::nullopt;
+        columns = count;
+    }
+    const bool good = columns && (*columns == 6 || *columns == 7 || *columns == 12 || *columns == 13);
+    return good ? columns : std::nullopt;
+}
+
 /// The name before a '{', without "(3D)".
 std::string name_of(std::string_view head) {
     head = trimmed(head.substr(0, head.find('(')));
@@ -81,6 +110,8 @@ std::string name_of(std::string_view head) {
 
 std::vector<ForeignModel> models(const ForeignFile& file) {
     const std::string_view text = file.text();
+    if (bare_columns(text))
+        return {{std::string(stem_of(file.sources.name(file.file))), file.span(0, text.size())}};
     std::vector<ForeignModel> found;
     std::string head; // since the last entry, without comments
     std::optional<ForeignModel> open;
@@ -127,10 +158,12 @@ class SystemReader {
     std::optional<System> read(const ForeignModel& model) {
         const std::string_view text = file_.text();
         const std::size_t brace = text.find('{', model.span.begin);
-        const std::size_t begin = std::min<std::size_t>(brace + 1, model.span.end);
-        const std::size_t end = model.span.end - 1; // the '}'
+        const std::optional<std::size_t> bare = bare_columns(text);
+        const std::size_t begin = bare ? 0 : std::min<std::size_t>(brace + 1, model.span.end);
+        const std::size_t end = bare ? text.size() : model.span.end - 1; // the '}'
         std::vector<Line> lines = lines_of(text, begin, end);
-        system_.in_space = says_3d(text.substr(model.span.begin, begin - model.span.begin));
+        system_.in_space =
+            bare.value_or(0) > 7 || says_3d(text.substr(model.span.begin, begin - model.span.begin));
         if (!lines.empty() && says_3d(lines[0].words)) { // behind the brace, as some have it
             system_.in_space = true;
             const std::size_t close = lines[0].words.find(')') + 1;
@@ -384,8 +417,9 @@ std::optional<Translation> translate(const ForeignFile& file, const ForeignModel
     return Writer(file, model, *system).write();
 }
 
-/// A block that begins with six numbers.
+/// A block that begins with six numbers, or a table.
 bool recognises(std::string_view text) {
+    if (bare_columns(text)) return true;
     constexpr std::size_t least = 6;
     std::optional<std::size_t> numbers; // of the block so far; nothing outside of one
     for (const Line& line : lines_of(text, 0, text.size())) {
@@ -416,7 +450,7 @@ Importer fractint_ifs_importer() {
     return {.format = "Fractint IFS",
             .endings = endings,
             .recognises = fractint_ifs::recognises,
-            .sign = "a block 'name { .5 0 0 .5 0 0 1 ... }' of rows of numbers",
+            .sign = "a block 'name { .5 0 0 .5 0 0 1 ... }' of rows of numbers, or such rows alone",
             .models = fractint_ifs::models,
             .translate = fractint_ifs::translate};
 }

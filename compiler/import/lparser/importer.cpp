@@ -33,6 +33,9 @@ bool is_lparser(std::string_view text) {
         if (keywords && word == "axiom") return true;
         if (!keywords && statements == numbers) return true;
         if (!keywords && leading_number(word).length != word.size()) return false;
+        // A table of numbers is another program's: one number stands on a line here, with words after it at
+        // most.
+        if (!keywords && leading_number(trimmed(words.substr(word.size()))).length > 0) return false;
         ++statements;
     }
     return false;

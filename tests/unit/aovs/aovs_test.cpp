@@ -23,7 +23,7 @@ namespace {
 struct Channels {
     int width = 0, height = 0;
     std::map<std::string, std::vector<float>> of;
-    std::map<float, std::string> names; ///< by id
+    std::map<float, std::string> names;            ///< by id
     std::map<std::string, std::string> matte_tags; ///< of all layers, without the layer's key
 
     float at(const std::string& name, int x, int y) const {
@@ -40,7 +40,8 @@ struct Channels {
     float matte(const std::string& layer, const std::string& name, int x, int y) const {
         const nlohmann::json manifest = nlohmann::json::parse(matte_tags.at(layer + "/manifest"));
         if (!manifest.contains(name)) return 0;
-        const auto id = static_cast<std::uint32_t>(std::stoul(manifest[name].get<std::string>(), nullptr, 16));
+        const auto id =
+            static_cast<std::uint32_t>(std::stoul(manifest[name].get<std::string>(), nullptr, 16));
         float share = 0;
         for (const std::string channel : {"00", "01", "02"})
             for (const auto& [id_at, share_at] : {std::pair(".R", ".G"), std::pair(".B", ".A")})
@@ -288,9 +289,8 @@ const std::string back = "canonical object back { instance: cube scale: 1.1 tran
 
 TEST_F(Aovs, MattesShareEachPixelAmongWhatItShows) {
     options_.antialias = 4;
-    const Channels channels =
-        drawn(parallel + "ground { height: -1 }\n" + red + front + back +
-              "object m { instance: front\n instance: back }\n");
+    const Channels channels = drawn(parallel + "ground { height: -1 }\n" + red + front + back +
+                                    "object m { instance: front\n instance: back }\n");
     EXPECT_EQ(channels.matte_tags.at("CryptoObject/hash"), "MurmurHash3_32");
     EXPECT_EQ(channels.matte_tags.at("CryptoMaterial/conversion"), "uint32_to_float32");
     int shared = 0;

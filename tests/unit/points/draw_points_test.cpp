@@ -3,6 +3,9 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -92,6 +95,79 @@ TEST_F(Points, WhatHasNoRoomIsNotBegun) {
     EXPECT_TRUE(std::filesystem::is_empty(directory_.path()));
 }
 
+/// Places of the points of a .ply: x and y.
+std::vector<glm::dvec2> places_of(const std::string& ply) {
+    const std::string end = "end_header\n";
+    constexpr std::size_t stride = 15;
+    std::vector<glm::dvec2> places;
+    for (std::size_t at = ply.find(end) + end.size(); at + stride <= ply.size(); at += stride) {
+        float xyz[3];
+        std::memcpy(xyz, ply.data() + at, sizeof xyz);
+        places.emplace_back(xyz[0], xyz[1]);
+    }
+    return places;
+}
+
+/// Maps to the corners 0, 1 and 2 of a line: a never follows itself, and only b follows c.
+TEST_F(Points, OrbitsFollowTheirMatrix) {
+    ASSERT_TRUE(write_text(path("o.rifs"), "orbit o {\n map a { x = 0  y = x  probability 1/2 }\n"
+                                           " map b { x = 1  y = x  probability 1/4 }\n"
+                                           " map c { x = 2  y = x  probability 1/4 }\n"
+                                           " follow matrix {\n 0 1 3\n 1 1 1\n 0 1 0\n }\n}\n")
+                    .ok());
+    ASSERT_TRUE(draw(path("o.rifs"), "o.ply", 400'000)) << message_;
+    std::map<std::pair<int, int>, double> count; // of a map and the one before
+    for (const glm::dvec2 place : places_of(read("o.ply")))
+        count[{static_cast<int>(place.y), static_cast<int>(place.x)}] += 1;
+    const auto share = [&](int before, int after) {
+        return count[{before, after}] / (count[{before, 0}] + count[{before, 1}] + count[{before, 2}]);
+    };
+    EXPECT_EQ(share(0, 0), 0);
+    EXPECT_NEAR(share(0, 1), 0.25, 0.01); // 1/4 of 1/4 and 3/4
+    EXPECT_NEAR(share(1, 0), 0.5, 0.01);
+    EXPECT_NEAR(share(1, 2), 0.25, 0.01);
+    EXPECT_EQ(share(2, 1), 1);
+}
+
+TEST_F(Points, OrbitsShowWhatFinalMakesOfEachPoint) {
+    ASSERT_TRUE(write_text(path("o.rifs"),
+                           "orbit o {\n map { x = x/2  y = 0 }\n map { x = x/2 + 1/2  y = 0 }\n"
+                           " final { let far = 2*x  x = far*far  y = 7  tint rgb <1, 0, 0> 1 }\n}\n")
+                    .ok());
+    ASSERT_TRUE(draw(path("o.rifs"), "o.ply", 100'000)) << message_;
+    double sum = 0, roots = 0;
+    const std::vector<glm::dvec2> places = places_of(read("o.ply"));
+    for (const glm::dvec2 place : places) {
+        EXPECT_EQ(place.y, 7);
+        sum += place.x;
+        roots += std::sqrt(place.x);
+    }
+    // Of x even in [0, 1]: had it gone on from what is shown, it would have left.
+    EXPECT_NEAR(roots / static_cast<double>(places.size()), 1, 0.01);
+    EXPECT_NEAR(sum / static_cast<double>(places.size()), 4.0 / 3, 0.02);
+    EXPECT_EQ(read("o.ply").substr(read("o.ply").size() - 3), std::string("\xff\0\0", 3));
+}
+
+/// Every call is a number of its own, the same for both coordinates where a name keeps it.
+TEST_F(Points, OrbitsDrawRandomNumbers) {
+    ASSERT_TRUE(write_text(path("o.rifs"),
+                           "orbit o {\n let unused = 1\n map { let t = random(0, 360), n = normal(0, 0.1)\n"
+                           "  x = cos(t)  y = sin(t) + n - n + random(2, 3) - random(2, 3) } }\n")
+                    .ok());
+    ASSERT_TRUE(draw(path("o.rifs"), "o.ply", 200'000)) << message_;
+    double across = 0, up = 0;
+    const std::vector<glm::dvec2> places = places_of(read("o.ply"));
+    for (const glm::dvec2 place : places) {
+        across += place.x * place.x;
+        up += place.y * place.y;
+    }
+    EXPECT_NEAR(across / static_cast<double>(places.size()), 1.0 / 2, 0.005);
+    EXPECT_NEAR(up / static_cast<double>(places.size()), 1.0 / 2 + 1.0 / 6, 0.005); // a triangle's, too
+    const std::string one = read("o.ply");
+    ASSERT_TRUE(draw(path("o.rifs"), "o.ply", 200'000, 1)) << message_;
+    EXPECT_TRUE(read("o.ply") == one) << "by any number of threads";
+}
+
 TEST_F(Points, OrbitsThatGoAstrayAreExplained) {
     const struct {
         const char *text, *message;
@@ -101,6 +177,8 @@ TEST_F(Points, OrbitsThatGoAstrayAreExplained) {
         {"orbit o { start <1, 0>  x = 1/y  y = x }\n", "division by zero"},
         {"orbit o { start <1, 0>  map { let u = sqrt(y - x) x = u y = 0 } }\n", "sqrt"},
         {"orbit o { start <1, 1>  map { x = 2*x  y = y } map { x = x/2 y = 3*y } }\n", "the orbit diverges"},
+        {"orbit o { map { x = 0 y = 0 } final { x = 1/x  y = 0 } }\n", "division by zero"},
+        {"orbit o { x = 1/floor(random(0, 2))  y = 0 }\n", "division by zero"},
     };
     for (const auto& [text, message] : cases) {
         ASSERT_TRUE(write_text(path("o.rifs"), text).ok());
@@ -127,6 +205,19 @@ TEST_F(Points, OrbitsThatAreWrongAreExplained) {
          "either all maps have a probability"},
         {"orbit o { map { x = y y = x probability 2 } }\n", "a probability must lie between 0 and 1, not 2"},
         {"orbit o { map { x = y y = x material m } }\n", "unknown material 'm'"},
+        {"orbit o { let c = random(0, 1)  x = c  y = x }\n", "random"},
+        {"orbit o { map { x = y y = x } final { x = x } }\n", "this map has no formula 'y = ...'"},
+        {"orbit o { map { x = y y = x } final { x = x y = y probability 1 } }\n",
+         "'final' maps every point: it has no probability"},
+        {"orbit o { map { x = y y = x } final { x = x y = y }\n final { x = x y = y } }\n",
+         "duplicate 'final'"},
+        {"orbit o { map { x = y y = x } follow all }\n", "an orbit takes 'follow matrix { ... }'"},
+        {"orbit o { map { x = y y = x } follow matrix {\n 1 1\n } }\n",
+         "the matrix of 'orbit o' needs 1 rows of as many numbers, for it has 1 map"},
+        {"orbit o { map { x = y y = x } follow matrix {\n -1\n } }\n",
+         "an entry must lie between 0 and 1e+06, not -1"},
+        {"orbit o { map { x = y y = x } follow matrix {\n 0\n } }\n",
+         "no map may follow map 1: the orbit would end"},
         {"orbit o { x = y  y = x }\norbit p { x = y  y = x }\n", "an orbit must be alone in its file"},
     };
     for (const auto& [text, message] : cases) {

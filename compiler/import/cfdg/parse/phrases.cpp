@@ -41,6 +41,7 @@ bool Phrases::parse_modification(Modification& modification) {
     const std::string_view close = brackets ? "]" : "}";
     while (!at(close)) {
         if (at_end()) return expected(fmt::format("'{}'", close));
+        if (version_2() && accept(";")) continue;
         if (!parse_adjustment(modification)) return false;
     }
     next();

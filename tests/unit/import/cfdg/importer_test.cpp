@@ -29,6 +29,26 @@ TEST(ContextFree, ReadsBothVersions) {
     EXPECT_EQ(shapes("startshape A(2)\nshape A(number n) { loop (n) [y 2] CIRCLE [] if (n > 1) SQUARE [] "
                      "else A(n)[] }"),
               3u);
+    EXPECT_EQ(shapes("startshape A\nbackground { b -0.1; h 220; sat 0.7 }\nrule A { SQUARE { x 1; s 2; } }"),
+              1u);
+    EXPECT_EQ(shapes("startshape A\nshape A { loop 2 [x 1] SQUARE [[x 1 s 2]] }"), 2u);
+}
+
+/// The scale 0.5^1000 is smaller than any that the language takes.
+TEST(ContextFree, TurnsThatShrinkToNothingAreLeftOut) {
+    const std::size_t seen = shapes("startshape A\nshape A { loop 1000 [x 1 s 0.5] B [] }\n"
+                                    "shape B { SQUARE [] CIRCLE [x 5] }");
+    EXPECT_GT(seen, 60u);
+    EXPECT_LT(seen, 90u);
+    EXPECT_EQ(shapes("startshape A\nshape A { SQUARE [] SQUARE [x 2 s 1 1e-14] SQUARE [x 4 s 1e7 1e-3] }"),
+              2u);
+}
+
+TEST(ContextFree, GrammarsThatGrowWithoutEndAreRefusedOnce) {
+    const ImportedShapes model("a.cfdg", "startshape A\nrule A { B {} A { s 25 r 85 y 6 } A { s 25 y 6 } }\n"
+                                         "rule B { CIRCLE {} B { s 0.95 y 0.3 } }");
+    EXPECT_EQ(model.said().find("error:"), model.said().rfind("error:")) << model.said();
+    EXPECT_THAT(model.said(), HasSubstr("grows beyond all bounds"));
 }
 
 TEST(ContextFree, MovesBeforeItTurnsAndScales) {

@@ -112,11 +112,35 @@ TEST(Flame, OthersAreOrbits) {
     EXPECT_THAT(model.translation, HasSubstr("probability 0.25")); // two branches of julia
 }
 
+TEST(Flame, OrbitsHaveChaosAndAFinalMap) {
+    const ImportedShapes model("a.flame",
+                               flame("<xform weight=\"1\" chaos=\"0 2\" swirl=\"1\" coefs=\".5 0 0 .5 0 0\"/>"
+                                     "<xform weight=\"1\" julia=\"1\" coefs=\"1 0 0 1 0 0\"/>"
+                                     "<finalxform julia=\"2\" bubble=\"1\" coefs=\"1 0 0 1 3 0\"/>"));
+    EXPECT_TRUE(model.orbit) << model.said() << model.translation;
+    EXPECT_THAT(model.translation,
+                HasSubstr("    0 2 2\n    1 1 1\n    1 1 1\n  }\n")); // julia has two branches
+    EXPECT_THAT(model.translation, HasSubstr("  final {\n    let way = random(0, 2)\n"));
+    EXPECT_THAT(model.translation, HasSubstr("(2) * (choose(way < 1, sqrt(r) * "));
+}
+
+/// Random numbers of two variations of one map are their own; a blur before all others moves their point.
+TEST(Flame, BlursDrawRandomNumbers) {
+    const ImportedShapes model(
+        "a.flame", flame("<xform weight=\"1\" blur=\"2\" pre_blur=\".5\" pie=\"1\" pie_slices=\"3\" "
+                         "linear=\"1\" coefs=\"1 0 0 1 0 0\"/>"));
+    EXPECT_TRUE(model.orbit) << model.said() << model.translation;
+    EXPECT_THAT(model.translation, HasSubstr("let turn1 = random(0, 360), far1 = random(0, 1)\n"));
+    EXPECT_THAT(model.translation,
+                HasSubstr("let u = (1) * x + (0) * y + (0) + (0.5) * (far2 * cos(turn2))\n"));
+    EXPECT_THAT(model.translation, HasSubstr("let slice3 = random(0, 3), part3 = random(0, 1), far3 = "));
+    EXPECT_THAT(model.translation, HasSubstr("let p = (2) * (far1 * cos(turn1)) + (1) * (far3 * cos("));
+}
+
 TEST(Flame, WhatHasNoFormulaIsNamed) {
     const auto said = [](const std::string& maps) { return ImportedShapes("a.flame", flame(maps)).said(); };
-    EXPECT_THAT(said("<xform weight=\"1\" blur=\"1\" coefs=\"1 0 0 1 0 0\"/>"),
-                HasSubstr("a.flame:2:2: error: the variation 'blur' is not translated"));
-    EXPECT_THAT(said("<xform weight=\"1\" wobble=\"1\" coefs=\"1 0 0 1 0 0\"/>"), HasSubstr("'wobble'"));
+    EXPECT_THAT(said("<xform weight=\"1\" wobble=\"1\" coefs=\"1 0 0 1 0 0\"/>"),
+                HasSubstr("a.flame:2:2: error: the variation 'wobble' is not translated"));
     EXPECT_THAT(said("<xform weight=\"1\" linear=\"1\" coefs=\"1 0 0\"/>"),
                 HasSubstr("'coefs' takes six numbers"));
     EXPECT_THAT(said("<xform"), HasSubstr("this is no XML"));

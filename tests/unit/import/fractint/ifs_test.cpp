@@ -30,6 +30,21 @@ TEST(FractintIfs, ReadsSpaceCommasAndRowsWithoutProbability) {
     EXPECT_TRUE(plain.graph) << plain.said();
 }
 
+TEST(FractintIfs, ReadsTablesWithoutANameAndBraces) {
+    const std::string rows =
+        " .5 0 0 .5 0 0 .33\n\n .5, 0, 0, .5, +1, 0, .33 ; the second\n .5 0 0 .5 .5 1 .34\n";
+    for (const char* const name : {"a gasket.ifs", "a gasket.txt"}) {
+        const ImportedShapes model(name, rows);
+        ASSERT_TRUE(model.graph) << model.said();
+        EXPECT_THAT(model.translation, HasSubstr("rifs a_gasket {\n  codes 2d {\n"));
+        EXPECT_THAT(model.translation, HasSubstr("0.33   # the second\n"));
+        EXPECT_EQ(model.graph->objects[model.graph->root].instances.size(), 3u);
+    }
+    const ImportedShapes space("a.ifs", ".5 0 0 0 .5 0 0 0 .5 0 0 1\n.5 0 0 0 .5 0 0 0 .5 0 0 -1");
+    EXPECT_THAT(space.translation, HasSubstr("codes 3d {"));
+    EXPECT_FALSE(ImportedShapes("a.ifs", "3 4 5\n.5 0 0 .5 0 0 .33\n.5 0 0 .5 1 0 .33\n").graph);
+}
+
 TEST(FractintIfs, ProbabilitiesThatAreNoneBecomeFractints) {
     // Fractint adds up to -0.25, then 0.5, and gives the rest to the last.
     const ImportedShapes model("a.ifs", "a {\n .5 0 0 .5 0 0 -.25\n .5 0 0 .5 1 0 .75\n .5 0 0 .5 0 1 .1 }");

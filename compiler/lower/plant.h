@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -27,12 +28,13 @@ struct PlantModule {
 
     std::uint16_t name = 0; ///< among Plant::names
     std::vector<double> parameters;
-    std::uint32_t parent = none;  ///< the module that bears it; none of the first
-    std::uint32_t part_of = none; ///< the module of the word in whose place it is drawn
-    bool branches = false;        ///< it begins a branch of its parent; else it follows it on the same axis
-    std::uint32_t order = 0;      ///< of its axis: 0 of the main one, 1 of its branches
-    std::uint32_t rank = 0;       ///< place on its axis, from 0 on
-    Vec3 start{0.0}, end{0.0};    ///< where the turtle stands before and after it, in the model's units
+    std::uint32_t parent = none;    ///< the module that bears it; none of the first
+    std::uint32_t part_of = none;   ///< the module of the word in whose place it is drawn
+    std::uint32_t last_part = none; ///< the last of its parts on its own axis, from which that goes on
+    bool branches = false;          ///< it begins a branch of its parent; else it follows it on the same axis
+    std::uint32_t order = 0;        ///< of its axis: 0 of the main one, 1 of its branches
+    std::uint32_t rank = 0;         ///< place on its axis, from 0 on
+    Vec3 start{0.0}, end{0.0};      ///< where the turtle stands before and after it, in the model's units
     Vec3 heading{0.0}, left{0.0}, up{0.0}; ///< unit vectors, before it
     Organ organ = Organ::none;
     std::uint16_t material = no_name; ///< among Plant::materials
@@ -42,7 +44,17 @@ struct PlantModule {
     double volume = 0;
     bool is_measured = true; ///< or area and volume lack those of models
     double width = 0;        ///< diameter of what it draws; of others, of segments after it
+    double base_width = 0;   ///< of a segment, where it begins
     double age = -1;         ///< steps since it came into being; -1: not known
+};
+
+using PlantTriangle = std::array<Vec3, 3>;
+
+/// The surface of a polygon, or of a model that is made of triangles only.
+struct PlantBlade {
+    std::uint32_t module = 0; ///< among Plant::modules
+    std::uint32_t shape = 0;  ///< among Plant::shapes
+    Affine world_from_shape;
 };
 
 /// The structure of a plant: modules in the order of the word, so that parents come before what they bear.
@@ -50,7 +62,9 @@ struct Plant {
     std::vector<std::string> names;
     std::vector<std::string> materials;
     std::vector<PlantModule> modules;
-    double steps = 0; ///< of the derivation
+    std::vector<std::vector<PlantTriangle>> shapes; ///< each in a frame of its own
+    std::vector<PlantBlade> blades;                 ///< in the order of the modules
+    double steps = 0;                               ///< of the derivation
 };
 
 } // namespace graftal

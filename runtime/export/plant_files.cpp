@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include <fmt/format.h>
@@ -25,37 +24,70 @@ std::size_t most_parameters(const Plant& plant) {
     return most;
 }
 
+/// A module with the numbers that are found from the whole plant.
+struct PlantRow {
+    const PlantModule& module;
+    unsigned strahler = 0;
+    double path = 0;
+    const OrganLight* light = nullptr; ///< null: of no row
+};
+
+PlantRow row_of(const WrittenPlant& table, std::size_t id) {
+    return {table.plant.modules[id], table.tree.strahler[id], table.tree.path[id],
+            table.light ? &table.light->organs[id] : nullptr};
+}
+
 /// Numbers that every format has, in this order; no number: not known.
 struct Column {
     const char* name;
-    double (*value)(const PlantModule& module);
+    double (*value)(const PlantRow& row);
 };
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+double six_decimals(float number) {
+    return std::nearbyint(1e6 * static_cast<double>(number)) / 1e6;
+}
 constexpr Column columns[] = {
-    {"x", [](const PlantModule& m) { return m.start.x; }},
-    {"y", [](const PlantModule& m) { return m.start.y; }},
-    {"z", [](const PlantModule& m) { return m.start.z; }},
-    {"end_x", [](const PlantModule& m) { return m.end.x; }},
-    {"end_y", [](const PlantModule& m) { return m.end.y; }},
-    {"end_z", [](const PlantModule& m) { return m.end.z; }},
-    {"heading_x", [](const PlantModule& m) { return m.heading.x; }},
-    {"heading_y", [](const PlantModule& m) { return m.heading.y; }},
-    {"heading_z", [](const PlantModule& m) { return m.heading.z; }},
-    {"length", [](const PlantModule& m) { return m.length; }},
-    {"width", [](const PlantModule& m) { return m.width; }},
-    {"radius", [](const PlantModule& m) { return m.width / 2; }},
-    {"area", [](const PlantModule& m) { return m.is_measured ? m.area : unknown; }},
-    {"volume", [](const PlantModule& m) { return m.is_measured ? m.volume : unknown; }},
+    {"x", [](const PlantRow& row) { return row.module.start.x; }},
+    {"y", [](const PlantRow& row) { return row.module.start.y; }},
+    {"z", [](const PlantRow& row) { return row.module.start.z; }},
+    {"end_x", [](const PlantRow& row) { return row.module.end.x; }},
+    {"end_y", [](const PlantRow& row) { return row.module.end.y; }},
+    {"end_z", [](const PlantRow& row) { return row.module.end.z; }},
+    {"heading_x", [](const PlantRow& row) { return row.module.heading.x; }},
+    {"heading_y", [](const PlantRow& row) { return row.module.heading.y; }},
+    {"heading_z", [](const PlantRow& row) { return row.module.heading.z; }},
+    {"length", [](const PlantRow& row) { return row.module.length; }},
+    {"width", [](const PlantRow& row) { return row.module.width; }},
+    {"radius", [](const PlantRow& row) { return row.module.width / 2; }},
+    {"area", [](const PlantRow& row) { return row.module.is_measured ? row.module.area : unknown; }},
+    {"volume", [](const PlantRow& row) { return row.module.is_measured ? row.module.volume : unknown; }},
+    {"strahler",
+     [](const PlantRow& row) { return row.strahler > 0 ? static_cast<double>(row.strahler) : unknown; }},
+    {"path", [](const PlantRow& row) { return row.path; }},
+};
+/// The light on organs, where it was asked for.
+constexpr Column light_columns[] = {
+    {"irradiance", [](const PlantRow& row) { return six_decimals(row.light->light); }},
+    {"irradiance_error", [](const PlantRow& row) { return six_decimals(row.light->error); }},
+    {"absorbed", [](const PlantRow& row) { return six_decimals(row.light->absorbed); }},
+    {"sunlit", [](const PlantRow& row) { return six_decimals(row.light->sunlit); }},
 };
 /// The rest of the turtle's frame, which JSON has too.
 constexpr Column frame_columns[] = {
-    {"left_x", [](const PlantModule& m) { return m.left.x; }},
-    {"left_y", [](const PlantModule& m) { return m.left.y; }},
-    {"left_z", [](const PlantModule& m) { return m.left.z; }},
-    {"up_x", [](const PlantModule& m) { return m.up.x; }},
-    {"up_y", [](const PlantModule& m) { return m.up.y; }},
-    {"up_z", [](const PlantModule& m) { return m.up.z; }},
+    {"left_x", [](const PlantRow& row) { return row.module.left.x; }},
+    {"left_y", [](const PlantRow& row) { return row.module.left.y; }},
+    {"left_z", [](const PlantRow& row) { return row.module.left.z; }},
+    {"up_x", [](const PlantRow& row) { return row.module.up.x; }},
+    {"up_y", [](const PlantRow& row) { return row.module.up.y; }},
+    {"up_z", [](const PlantRow& row) { return row.module.up.z; }},
 };
+
+/// Columns that the table has in every format.
+std::vector<Column> columns_of(const WrittenPlant& table) {
+    std::vector<Column> all(std::begin(columns), std::end(columns));
+    if (table.light) all.insert(all.end(), std::begin(light_columns), std::end(light_columns));
+    return all;
+}
 
 std::string_view material_of(const PlantModule& module, const Plant& plant) {
     return module.material == PlantModule::no_name ? std::string_view() : plant.materials[module.material];
@@ -79,10 +111,12 @@ std::string csv_name(std::string_view name) {
     return text + "\"";
 }
 
-std::optional<std::string> csv(const Plant& plant, std::uint64_t most_bytes) {
+std::optional<std::string> csv(const WrittenPlant& table, std::uint64_t most_bytes) {
+    const Plant& plant = table.plant;
+    const std::vector<Column> all = columns_of(table);
     const std::size_t parameters = most_parameters(plant);
     std::string text = "id,name,parent,relation,order,rank,age,part_of,organ,material";
-    for (const Column& column : columns)
+    for (const Column& column : all)
         text += fmt::format(",{}", column.name);
     for (std::size_t i = 0; i < parameters; ++i)
         text += fmt::format(",p{}", i + 1);
@@ -98,8 +132,8 @@ std::optional<std::string> csv(const Plant& plant, std::uint64_t most_bytes) {
                               : "axis",
             module.order, module.rank, cell(module.age < 0 ? unknown : module.age), cell(module.part_of),
             name_of(module.organ), csv_name(material_of(module, plant)));
-        for (const Column& column : columns)
-            text += "," + cell(column.value(module));
+        for (const Column& column : all)
+            text += "," + cell(column.value(row_of(table, id)));
         for (std::size_t i = 0; i < parameters; ++i)
             text += i < module.parameters.size() ? "," + shortest(module.parameters[i]) : ",";
         text += '\n';
@@ -108,13 +142,17 @@ std::optional<std::string> csv(const Plant& plant, std::uint64_t most_bytes) {
 }
 
 /// Row by row: a tree of all rows takes ten times the memory of the text.
-std::optional<std::string> json(const Plant& plant, std::uint64_t most_bytes) {
+std::optional<std::string> json(const WrittenPlant& table, std::uint64_t most_bytes) {
+    const Plant& plant = table.plant;
+    std::vector<Column> all = columns_of(table);
+    all.insert(all.end(), std::begin(frame_columns), std::end(frame_columns));
     using Json = nlohmann::ordered_json;
     const auto number = [](double value) { return std::isnan(value) ? Json(nullptr) : Json(value); };
     const auto id = [](std::uint32_t row) { return row == PlantModule::none ? Json(nullptr) : Json(row); };
     const auto word = [](std::string_view name) { return name.empty() ? Json(nullptr) : Json(name); };
     std::string text = fmt::format("{{\n \"steps\": {},\n \"modules\": [", shortest(plant.steps));
-    for (const PlantModule& module : plant.modules) {
+    for (std::size_t number_of_row = 0; number_of_row < plant.modules.size(); ++number_of_row) {
+        const PlantModule& module = plant.modules[number_of_row];
         const bool first = module.parent == PlantModule::none;
         Json row = {{"name", plant.names[module.name]},
                     {"parameters", module.parameters},
@@ -126,10 +164,9 @@ std::optional<std::string> json(const Plant& plant, std::uint64_t most_bytes) {
                     {"part_of", id(module.part_of)},
                     {"organ", word(name_of(module.organ))},
                     {"material", word(material_of(module, plant))}};
-        for (const std::span<const Column> some : {std::span<const Column>(columns), {frame_columns}})
-            for (const Column& column : some)
-                row[column.name] = number(column.value(module));
-        text += &module == plant.modules.data() ? "\n  " : ",\n  ";
+        for (const Column& column : all)
+            row[column.name] = number(column.value(row_of(table, number_of_row)));
+        text += number_of_row == 0 ? "\n  " : ",\n  ";
         if (text.size() > most_bytes) return std::nullopt;
         text += row.dump(-1, ' ', false, Json::error_handler_t::replace);
     }
@@ -175,7 +212,9 @@ std::vector<std::string> class_names(const Plant& plant) {
 
 /// The coding of Godin and Guedon (AMAPmod, FORM-A): one plant P1, whose vertices stand in the column of
 /// their order; `^<` follows the last vertex of its column, and `+` branches off that of the column before.
-std::optional<std::string> mtg(const Plant& plant, std::uint64_t most_bytes) {
+std::optional<std::string> mtg(const WrittenPlant& table, std::uint64_t most_bytes) {
+    const Plant& plant = table.plant;
+    const std::vector<Column> all = columns_of(table);
     const std::vector<std::string> classes = class_names(plant);
     std::vector<std::string> used = classes;
     std::erase(used, "");
@@ -193,11 +232,11 @@ std::optional<std::string> mtg(const Plant& plant, std::uint64_t most_bytes) {
             text += fmt::format("{}\t{}\t{}\t?\n", name, fmt::join(used, ","), relation);
     text += "\nFEATURES:\nNAME\tTYPE\n";
     std::string features;
-    for (const Column& column : columns)
+    for (const Column& column : all)
         features += fmt::format("\t{}", column.name);
     for (std::size_t i = 0; i < parameters; ++i)
         features += fmt::format("\tp{}", i + 1);
-    for (const Column& column : columns)
+    for (const Column& column : all)
         text += fmt::format("{}\tREAL\n", column.name);
     for (std::size_t i = 0; i < parameters; ++i)
         text += fmt::format("p{}\tREAL\n", i + 1);
@@ -217,9 +256,9 @@ std::optional<std::string> mtg(const Plant& plant, std::uint64_t most_bytes) {
         first = false;
         text += std::string(orders + 1 - module.order, '\t');
         bool begun = false;
-        for (const Column& column : columns) {
+        for (const Column& column : all) {
             if (std::exchange(begun, true)) text += '\t';
-            text += decimal(column.value(module));
+            text += decimal(column.value(row_of(table, id)));
         }
         for (std::size_t i = 0; i < parameters; ++i)
             text += i < module.parameters.size() ? "\t" + decimal(module.parameters[i]) : "\t";
@@ -257,19 +296,20 @@ std::string vain_plant_wish(const PlantFormat& format, const ExportOptions& opti
                        format.extension);
 }
 
-std::optional<std::string> export_plant(Session& session, StageOptions stages, const PlantFormat& format,
-                                        const ExportOptions& options, Compilation& compilation) {
-    stages.lower.in_place = LowerOptions::InPlace::plant;
-    stages.lower.may_be_orbit = true;
-    const std::shared_ptr<const LoweredModel> lowered = session.lowered(stages, compilation);
-    if (!lowered || !compilation.status.ok() || compilation.diagnostics.has_errors()) return std::nullopt;
-    if (!lowered->notes.plant) {
-        compilation.diagnostics.error(
-            Span(), fmt::format("only L-systems have modules, which a {} file holds", format.extension));
-        return std::nullopt;
+std::optional<std::string> export_plant(PictureSession& session, const RenderOptions& render,
+                                        const PlantFormat& format, const ExportOptions& options,
+                                        const PlantLightOptions* light, Compilation& compilation) {
+    const std::shared_ptr<const Plant> plant = plant_of_model(
+        session, render.compile,
+        fmt::format("only L-systems have modules, which a {} file holds", format.extension), compilation);
+    if (!plant) return std::nullopt;
+    std::optional<PlantLight> lit;
+    if (light) {
+        lit = light_of_model(session, render, *plant, *light, compilation);
+        if (!lit) return std::nullopt;
     }
-    const Plant& plant = *lowered->notes.plant;
-    const std::optional<std::string> text = format.text(plant, options.most_bytes);
+    const WrittenPlant table{*plant, tree_of(*plant), lit ? &*lit : nullptr};
+    const std::optional<std::string> text = format.text(table, options.most_bytes);
     if (!text || text->size() > options.most_bytes) {
         compilation.diagnostics
             .error(Span(), fmt::format("the file would have more than {} bytes", options.most_bytes))
@@ -278,7 +318,11 @@ std::optional<std::string> export_plant(Session& session, StageOptions stages, c
     }
     compilation.status = write_text(options.output, *text);
     if (!compilation.status.ok()) return std::nullopt;
-    return fmt::format("{} modules after {} steps", plant.modules.size(), shortest(plant.steps));
+    std::string summary =
+        fmt::format("{} modules after {} steps", plant->modules.size(), shortest(plant->steps));
+    if (lit)
+        summary += fmt::format(", the light on {} organs by {} samples each", lit->lit_organs, lit->samples);
+    return summary;
 }
 
 } // namespace graftal

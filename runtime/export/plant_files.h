@@ -6,11 +6,18 @@
 #include <string_view>
 
 #include "compiler/lower/plant.h"
-#include "compiler/session/session.h"
-#include "compiler/session/stages.h"
 #include "runtime/export/formats.h"
+#include "runtime/plants/plant_of_model.h"
+#include "runtime/plants/plant_tree.h"
 
 namespace graftal {
+
+/// A plant with what its table tells besides its modules.
+struct WrittenPlant {
+    const Plant& plant;
+    PlantTree tree;
+    const PlantLight* light = nullptr; ///< null: nobody asked for it
+};
 
 /// A format for the structure of a plant, one row a module: its name, parameters, parent, order, rank, place,
 /// and what is drawn.
@@ -18,7 +25,7 @@ struct PlantFormat {
     std::string_view extension; ///< with its point
     std::string_view summary;
     /// The text of a file; nothing where it would have more bytes than that.
-    std::optional<std::string> (*text)(const Plant& plant, std::uint64_t most_bytes);
+    std::optional<std::string> (*text)(const WrittenPlant& table, std::uint64_t most_bytes);
 };
 
 /// The format that the ending of a file's name asks for; null if there is none.
@@ -31,9 +38,11 @@ std::string plant_endings();
 /// asked for by their size or address.
 std::string vain_plant_wish(const PlantFormat& format, const ExportOptions& options, bool finds_parts);
 
-/// Writes the plant of an L-system to the file that the options name; its summary, or nothing after an error
-/// in the compilation.
-std::optional<std::string> export_plant(Session& session, StageOptions stages, const PlantFormat& format,
-                                        const ExportOptions& options, Compilation& compilation);
+/// Writes the plant of an L-system to the file that the options name, with the light on its organs where
+/// `light` is not null; its summary, or nothing after an error in the compilation. `render`: the stages and
+/// threads.
+std::optional<std::string> export_plant(PictureSession& session, const RenderOptions& render,
+                                        const PlantFormat& format, const ExportOptions& options,
+                                        const PlantLightOptions* light, Compilation& compilation);
 
 } // namespace graftal

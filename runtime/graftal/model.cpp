@@ -22,6 +22,8 @@
 #include "runtime/graftal/library_words.h"
 #include "runtime/graftal/listed_graph.h"
 #include "runtime/image_files/image_files.h"
+#include "runtime/plants/measures_report.h"
+#include "runtime/plants/plant_of_model.h"
 #include "runtime/points/draw_points.h"
 #include "runtime/render/aov_channels.h"
 #include "runtime/render/file_film.h"
@@ -165,7 +167,7 @@ std::string text_of(const std::vector<Message>& messages) {
 }
 
 struct Model::Parts {
-    explicit Parts(std::string path) : session(std::move(path), Keep::everything, files) {
+    explicit Parts(std::string name) : path(std::move(name)), session(path, Keep::everything, files) {
         session.set_control(
             {CancelFlag([this] { return cancelled.load(); }), [this](const Progress& progress) {
                  const auto done = static_cast<double>(progress.done);
@@ -186,6 +188,14 @@ struct Model::Parts {
         return render;
     }
 
+    /// The light on plants, within the work that is set, or as much as commands take.
+    PlantLightOptions light_options(int samples) const {
+        PlantLightOptions light;
+        light.most_samples = samples;
+        light.work_seconds = options.work_seconds.value_or(light.work_seconds);
+        return light;
+    }
+
     bool draw(PictureFilm& film, RenderOptions render, Compilation& compilation) {
         render.film = &film;
         return render_natively(session, render, compilation).has_value();
@@ -201,6 +211,7 @@ struct Model::Parts {
     }
 
     MemoryFiles files{&disk_files()}; ///< texts of the caller, over those of the disk
+    std::string path;                 ///< of the model
     PictureSession session;
     RenderOptions options;
     bool error_asked = false;
@@ -443,6 +454,37 @@ Result<PlantTable> Model::plant() {
     });
 }
 
+Result<PlantReport> Model::measures(const MeasureSettings& settings) {
+    return parts_->run<PlantReport>([&](Compilation& compilation) -> std::optional<PlantReport> {
+        if ((settings.ground_area && !(*settings.ground_area > 0)) || settings.samples < 4) {
+            compilation.status = Status::failure("ground_area is not above 0, or samples is less than 4");
+            return std::nullopt;
+        }
+        const StageOptions& stages = parts_->options.compile;
+        const auto plant = plant_of_model(parts_->session, stages,
+                                          "only L-systems have a plant that can be measured", compilation);
+        if (!plant) return std::nullopt;
+        const auto measures =
+            measures_of_model(parts_->session, stages, *plant, settings.ground_area, compilation);
+        if (!measures) return std::nullopt;
+        PlantReport report;
+        std::optional<PlantLight> light;
+        if (settings.irradiance) {
+            light = light_of_model(parts_->session, parts_->options, *plant,
+                                   parts_->light_options(settings.samples), compilation);
+            if (!light) return std::nullopt;
+            for (const OrganLight& organ : light->organs) {
+                report.lights.push_back(organ.light);
+                report.errors.push_back(organ.error);
+                report.absorbed.push_back(organ.absorbed);
+                report.sunlit.push_back(organ.sunlit);
+            }
+        }
+        report.json = measures_json(parts_->path, *measures, light ? &*light : nullptr);
+        return report;
+    });
+}
+
 Result<Points> Model::points(std::uint64_t count) {
     return parts_->run<Points>([&](Compilation& compilation) -> std::optional<Points> {
         if (count > most_points) {
@@ -566,10 +608,14 @@ Result<Drawn> Model::export_to(const std::string& path, const ExportSettings& se
         if (!format) {
             std::string vain = vain_plant_wish(*plant, options.file, false);
             if (!vain.empty()) return fail(std::move(vain));
-            if (!export_plant(parts_->session, stages, *plant, options.file, compilation))
+            const PlantLightOptions light = parts_->light_options(PlantLightOptions().most_samples);
+            if (!export_plant(parts_->session, parts_->options, *plant, options.file,
+                              settings.irradiance ? &light : nullptr, compilation))
                 return std::nullopt;
             return Drawn{path, watch.seconds()};
         }
+        if (settings.irradiance)
+            return fail(fmt::format("irradiance is for {}, not for {}", plant_endings(), format->extension));
         if (const ExportWish* const wish = find_vain_wish(*format, options.file))
             return fail(fmt::format("{} is for {}, not for {}", wish->option, endings_with(wish->has),
                                     format->extension));

@@ -113,6 +113,21 @@ struct PlantTable {
     std::vector<double> parameters; ///< parameter_count of each; those that a module has not are NaN
 };
 
+/// Settings of measures().
+struct MeasureSettings {
+    std::optional<double> ground_area; ///< above 0; nothing: the crown's convex hull, seen from above
+    bool irradiance = false;           ///< the light on each organ, too
+    int samples = 64;                  ///< of each organ at most, as far as work() allows; at least 4
+};
+
+/// Measures of the plant that an L-system draws (docs/export.md).
+struct PlantReport {
+    std::string json; ///< as `graftal stats --plant --json` prints it
+    /// Light, if it was asked for: a row for each of plant(). An open horizontal plane has 1; NaN where
+    /// nothing is known.
+    std::vector<float> lights, errors, absorbed, sunlit;
+};
+
 /// Points of a model by random iteration.
 struct Points {
     std::vector<float> places;     ///< x, y, z of each
@@ -157,7 +172,7 @@ struct Drawn {
     double seconds = 0; ///< of drawing
 };
 
-/// Settings of a file for another program. Each of the first five is for some formats only.
+/// Settings of a file for another program. All but most_bytes are for some formats only.
 struct ExportSettings {
     std::optional<double> unit_mm;    ///< millimetres of a unit of the model; else as the format has it
     std::optional<unsigned> levels;   ///< instances within instances, at most; at least 2
@@ -167,6 +182,7 @@ struct ExportSettings {
     /// Most bytes of the file. A model that takes more, without an error_px(), loses small parts, with a
     /// warning, until the file has no more. With this default it has 128 MiB then. Else graftal refuses it.
     std::uint64_t most_bytes = std::uint64_t{1} << 30;
+    bool irradiance = false; ///< `.csv`, `.json` and `.mtg`: the light on each organ, too
 };
 
 enum class Engine {
@@ -228,6 +244,7 @@ class GRAFTAL_API Model {
     /// The string that an L-system derives, before interpretation; at most 5 million modules.
     Result<std::string> word();
     Result<PlantTable> plant();
+    Result<PlantReport> measures(const MeasureSettings& settings = {});
     /// The points that `graftal points -o FILE.ply` writes, as many as were asked for; at most 10^9.
     Result<Points> points(std::uint64_t count);
     /// Draws into memory, by the native engine: the pixels of the `.png` that render_to() writes.

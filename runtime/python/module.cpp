@@ -204,6 +204,19 @@ PYBIND11_MODULE(_graftal, module) {
                  dict["parameters"] = array_of(std::move(table.parameters), {rows, parameters});
                  return dict;
              })
+        .def("measures",
+             [](Model& model, std::optional<double> ground_area, bool irradiance, int samples,
+                const py::object& progress) {
+                 const MeasureSettings settings{ground_area, irradiance, samples};
+                 PlantReport report = value_of(model, progress, [&] { return model.measures(settings); });
+                 const auto rows = static_cast<py::ssize_t>(report.lights.size());
+                 py::dict organs;
+                 organs["irradiance"] = array_of(std::move(report.lights), {rows});
+                 organs["irradiance_error"] = array_of(std::move(report.errors), {rows});
+                 organs["absorbed"] = array_of(std::move(report.absorbed), {rows});
+                 organs["sunlit"] = array_of(std::move(report.sunlit), {rows});
+                 return py::make_tuple(report.json, organs);
+             })
         .def("points",
              [](Model& model, std::uint64_t count, const py::object& progress) {
                  Points points = value_of(model, progress, [&] { return model.points(count); });
@@ -238,8 +251,9 @@ PYBIND11_MODULE(_graftal, module) {
         .def("export_to",
              [](Model& model, const std::string& path, std::optional<double> unit_mm,
                 std::optional<unsigned> levels, std::optional<std::size_t> nodes, bool instancing,
-                bool plotter, std::uint64_t most_bytes, const py::object& progress) {
-                 const ExportSettings settings{unit_mm, levels, nodes, instancing, plotter, most_bytes};
+                bool plotter, std::uint64_t most_bytes, bool irradiance, const py::object& progress) {
+                 const ExportSettings settings{unit_mm, levels,     nodes,     instancing,
+                                               plotter, most_bytes, irradiance};
                  value_of(model, progress, [&] { return model.export_to(path, settings); });
              });
 }

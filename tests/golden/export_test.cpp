@@ -63,6 +63,8 @@ TEST_F(Export, RefusesWrongCommandLines) {
         {"export m.rifs -o a.usda --nodes 3", "graftal: --nodes is for .gltf, .glb, not for .usda"},
         {"export m.rifs -o a.obj --plotter", "graftal: --plotter is for .svg, not for .obj"},
         {"export m.rifs -o a.ply --instancing", "graftal: --instancing is for .gltf, .glb, not for .ply"},
+        {"export m.rifs -o a.obj --irradiance",
+         "graftal: --irradiance is for .csv, .json or .mtg, not for .obj"},
         {"export m.rifs -o a.csv --unit 3mm",
          "graftal: --unit is for .usda, .gltf, .glb, .stl, .svg, not for .csv"},
         {"export m.rifs -o a.json --nodes 3", "graftal: --nodes is for .gltf, .glb, not for .json"},

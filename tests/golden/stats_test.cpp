@@ -152,6 +152,40 @@ TEST_F(Stats, NameTheCycleThatDoesNotContract) {
     EXPECT_EQ(graftal("check grow.inst").status, 1);
 }
 
+// A tree of ABOP whose branchings are known: each segment but the last bears two, at 45 degrees.
+TEST_F(Stats, OfAPlant) {
+    const std::string tree = "'" + source_path("scenes/abop/fig2_6a.lsys") + "' --plant";
+    const Json json = stats(tree + " --ground-area 10");
+    EXPECT_EQ(json["segments"], 1023);
+    EXPECT_EQ(json["tips"], 512);
+    EXPECT_EQ(json["leaves"], 3072);
+    EXPECT_EQ(json["strahler"].size(), 10u);
+    EXPECT_NEAR(json["branching_ratio"].get<double>(), 2, 1e-12);
+    EXPECT_NEAR(json["angle"]["mean"].get<double>(), 45, 1e-9);
+    EXPECT_NEAR(json["leaf_area_index"].get<double>(), json["leaf"]["area"].get<double>() / 10, 1e-12);
+    EXPECT_FALSE(json.contains("light"));
+    EXPECT_THAT(graftal("stats " + tree).out,
+                testing::HasSubstr("\nleaf area                      70.4629\n"));
+    EXPECT_THAT(graftal("stats --help").out, testing::HasSubstr("\n  branching_ratio "));
+    EXPECT_EQ(graftal("stats " + pound_sign + " --plant").status, 1);
+    for (const char* vain :
+         {" --irradiance", " --ground-area 2", " --plant --ground-area 0", " --plant --boxes"})
+        EXPECT_EQ(graftal("stats " + pound_sign + vain).status, 2) << vain;
+}
+
+TEST_F(Stats, OfTheLightOnAPlant) {
+    const std::string tree =
+        "'" + source_path("scenes/abop/fig2_6a.lsys") + "' --plant --irradiance --steps 6";
+    const Json light = stats(tree)["light"];
+    EXPECT_EQ(light["samples"], 64);
+    const auto of = [&](const char* key) { return light[key].get<double>(); };
+    EXPECT_NEAR(of("taken") + of("to_sky") + of("to_ground") + of("left"), of("falls"), 1e-9 * of("falls"));
+    EXPECT_NEAR(of("absorbed"), of("taken"), 4 * of("absorbed_error"));
+    EXPECT_TRUE(light["sunlit_leaf_area"].is_null());
+    EXPECT_EQ(stats(tree + " --threads 3")["light"], light);
+    EXPECT_THAT(graftal("stats " + tree + " --work 0.001").err, testing::HasSubstr("seconds of work"));
+}
+
 TEST_F(Stats, OfAWordThatDrawsNothing) {
     write("word.lsys", "lsys word {\nsteps 3\nmodules A, 4\naxiom A4\nA -> AA\n}\n");
     const Json json = stats("word.lsys");

@@ -1,6 +1,8 @@
 """The Python package against the program: GRAFTAL_PROGRAM and GRAFTAL_SOURCE name it and the project."""
 
+import csv
 import json
+import math
 import os
 import pathlib
 import resource
@@ -201,6 +203,29 @@ class Package(unittest.TestCase):
             graftal.load(scene("ifs/fern.rifs")).plant()
         with self.assertRaisesRegex(Exception, "csv"):
             model.export(self.path("a.xyz"))
+
+    def test_measures_are_those_of_the_program(self):
+        path = scene("abop/fig2_6a.lsys")
+        options = ("--steps", "4", "--samples", "16", "--irradiance")
+        printed = json.loads(self.program("stats", path, *options, "--plant", "--ground-area", "2", "--json"))
+        model = graftal.load(path, steps=4)
+        measures = model.measures(ground_area=2, irradiance=True, samples=16)
+        organs = measures["light"].pop("organs")
+        self.assertEqual(measures, printed)
+        self.assertEqual(measures["strahler"][0]["streams"], measures["tips"])
+        self.program("export", path, *options, "-q", "-o", self.path("a.csv"))
+        rows = list(csv.DictReader(pathlib.Path(self.path("a.csv")).read_text().splitlines()))
+        self.assertEqual(len(organs), len(rows))
+        for key in ("irradiance", "irradiance_error", "absorbed", "sunlit"):
+            written = [float(row[key]) if row[key] else math.nan for row in rows]
+            np.testing.assert_allclose(organs[key], written, atol=1e-6)
+        lit = ~np.isnan(organs["irradiance"])
+        area = model.plant()["area"][lit]
+        np.testing.assert_allclose((area * organs["absorbed"][lit]).sum(), measures["light"]["absorbed"], rtol=1e-5)
+        with self.assertRaises(graftal.ModelError):
+            graftal.load(scene("ifs/fern.rifs")).measures()
+        with self.assertRaises(graftal.ModelError):
+            model.export(self.path("a.obj"), irradiance=True)
 
     def test_points_are_those_of_the_program_to_the_bit(self):
         self.program("points", scene("ifs/fern.rifs"), "--points", "300000", "--seed", "7", "-q", "-o", self.path("a.ply"))

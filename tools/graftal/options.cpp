@@ -17,6 +17,7 @@
 #include "compiler/session/stats.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/inverse/blocks/coded_picture.h"
+#include "runtime/plants/measures_report.h"
 #include "runtime/render/native_engine.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/help/documents.h"
@@ -176,12 +177,28 @@ void add_stats(CLI::App& app, Options& options) {
     app.add_flag("--json", options.json, "Print one JSON object on standard output");
     app.add_flag("--boxes", options.boxes,
                  "Count the boxes of a grid that the figure meets, for sides that halve: its box dimension");
+    app.add_flag("--plant", options.plant,
+                 "Measure the plant of an L-system, in place of the model: lengths, areas, orders, angles")
+        ->excludes("--boxes");
+    add_value(
+        app, "--ground-area", "AREA",
+        "With --plant: ground for the leaf area index and the share of light, in square units of the model "
+        "(default: the crown's convex hull from above)",
+        "a number above 0", [](const std::string& text) { return parse_at_least(text, 1e-100); },
+        [&](double area) { options.ground_area = area; })
+        ->needs("--plant");
+    add_irradiance(app, options);
+    app.get_option("--irradiance")->needs("--plant");
     add_inspecting_work(app, options);
     add_common(app, options);
     std::string keys = "Keys:\n";
     for (const StatsKey& key : stats_keys())
         keys += fmt::format("  {:<30} {}\n", key.name, key.meaning);
+    keys += "Keys with --plant:\n";
+    for (const MeasuresKey& key : measures_keys())
+        keys += fmt::format("  {:<30} {}\n", key.name, key.meaning);
     app.footer(keys + "Examples:\n"
+                      "  graftal stats scenes/abop/fig2_6a.lsys --plant\n"
                       "  graftal stats scenes/hart/pound_sign.rifs\n"
                       "  graftal stats scenes/ifs/koch_curve.rifs --boxes\n"
                       "  graftal stats scenes/hart/pound_sign.rifs --steps 100 --json | jq -r .primitives");

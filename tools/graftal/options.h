@@ -84,9 +84,12 @@ struct Options {
     bool error_asked = false; ///< --error or --error-world is given
     ExportOptions file;       ///< of `export`; its output and metadata are those of `render`
     bool json = false;
-    bool check = false;   ///< of `format`: write nothing
-    bool boxes = false;   ///< of `stats`
-    bool as_rifs = false; ///< of `print`
+    bool check = false;                ///< of `format`: write nothing
+    bool boxes = false;                ///< of `stats`
+    bool plant = false;                ///< of `stats`: measures of the plant, in place of the model's
+    std::optional<double> ground_area; ///< with `plant`
+    bool irradiance = false; ///< of `stats` with `plant`, and of `export` for plants: the light on organs
+    bool as_rifs = false;    ///< of `print`
     double threshold = 0;
     bool in_parts = false; ///< the picture of `render` may be larger than one that is drawn at once
 };

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
+#include "compiler/lsys/turtle/flat_model.h"
 #include "compiler/lsys/turtle/triangulate.h"
 #include "compiler/support/number_range.h"
 
@@ -33,6 +35,7 @@ DrawnBody frustum(double length, double from_width, double width) {
     return {.organ = Organ::segment,
             .length = length,
             .width = width,
+            .base_width = from_width,
             .area = std::numbers::pi * (from_width + width) / 2 * slant,
             .volume = std::numbers::pi / 12 * length * squares};
 }
@@ -44,31 +47,6 @@ DrawnBody ball(double diameter) {
 
 DrawnBody disc(double diameter) {
     return {.organ = Organ::disc, .width = diameter, .area = std::numbers::pi * diameter * diameter / 4};
-}
-
-DrawnBody polygon(std::span<const Vec3> corners) {
-    DrawnBody body{.organ = Organ::polygon};
-    for (const auto& [a, b, c] : triangulate(corners))
-        body.area += glm::length(glm::cross(corners[b] - corners[a], corners[c] - corners[a])) / 2;
-    return body;
-}
-
-/// The area of one side of a model that is made of triangles only, as blades of leaves are; nothing of
-/// others, nor of many.
-std::optional<double> flat_area(const Graph& graph, ObjectId id, const Mat3& linear, int& most) {
-    const Object& object = graph.objects[id];
-    if (--most < 0 || object.is_combined() || object.packed) return std::nullopt;
-    if (object.primitive) {
-        if (*object.primitive != PrimitiveKind::triangle) return std::nullopt;
-        return 0.75 * std::numbers::sqrt3 * glm::length(glm::cross(linear[0], linear[1]));
-    }
-    double sum = 0;
-    for (const Instance& part : object.instances) {
-        const auto area = flat_area(graph, part.master, linear * part.parent_from_child.linear, most);
-        if (!area) return std::nullopt;
-        sum += *area;
-    }
-    return sum;
 }
 
 } // namespace
@@ -215,7 +193,16 @@ void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, in
 }
 
 void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink) {
-    if (witness_) return tell(polygon(corners), colour);
+    if (witness_) {
+        std::vector<PlantTriangle> triangles;
+        DrawnBody body{.organ = Organ::polygon};
+        for (const auto& [a, b, c] : triangulate(corners)) {
+            triangles.push_back({corners[a], corners[b], corners[c]});
+            body.area += glm::length(glm::cross(corners[b] - corners[a], corners[c] - corners[a])) / 2;
+        }
+        body.triangles = triangles;
+        return tell(body, colour);
+    }
     for (const auto& [a, b, c] : triangulate(corners)) {
         const Affine place = on_corners(corners[a], corners[b], corners[c]);
         if (is_finite(place)) add(PrimitiveKind::triangle, place, colour, span, sink);
@@ -225,11 +212,13 @@ void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span s
 void TurtleBodies::add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span,
                              BodySink sink) {
     if (witness_) {
-        int triangles_left = 1000;
-        const std::optional<double> area =
-            flat_area(graph_, model.root, Affine::scale(model.scale).linear, triangles_left);
-        return witness_->draws(
-            {.organ = Organ::model, .area = area.value_or(0), .is_measured = area.has_value()});
+        const std::optional<double> area = flat_area(graph_, model.root, Affine::scale(model.scale).linear);
+        return witness_->draws({.organ = Organ::model,
+                                .area = area.value_or(0),
+                                .is_measured = area.has_value(),
+                                .graph = &graph_,
+                                .model = model.root,
+                                .part_from_model = start_from_turtle * Affine::scale(model.scale)});
     }
     const Vec3 scale(at_least_size(model.scale.x), at_least_size(model.scale.y),
                      at_least_size(model.scale.z));

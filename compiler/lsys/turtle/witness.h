@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "compiler/graph/graph.h"
 #include "compiler/lower/plant.h"
 #include "compiler/lsys/compile/module_table.h"
 #include "compiler/support/affine.h"
@@ -16,13 +17,18 @@ class Turtle;
 /// A body in the frame of the part that draws it.
 struct DrawnBody {
     Organ organ = Organ::none;
-    double length = 0; ///< of segments
-    double width = 0;  ///< diameter; of a tapered segment that at its end
-    double area = 0;   ///< of the surface; of flat bodies one side
+    double length = 0;     ///< of segments
+    double width = 0;      ///< diameter; of a tapered segment that at its end
+    double base_width = 0; ///< of segments, where they begin
+    double area = 0;       ///< of the surface; of flat bodies one side
     double volume = 0;
-    bool is_measured = true;   ///< or neither area nor volume are known
-    std::string_view material; ///< empty: a model has its own
-    std::optional<Vec3> start; ///< nothing: where the turtle was
+    bool is_measured = true;                  ///< or neither area nor volume are known
+    std::string_view material;                ///< empty: a model has its own
+    std::optional<Vec3> start;                ///< nothing: where the turtle was
+    std::span<const PlantTriangle> triangles; ///< of a polygon
+    const Graph* graph = nullptr;             ///< of a model: the graph that has it,
+    ObjectId model = 0;                       ///< its root there,
+    Affine part_from_model;                   ///< and its place
 };
 
 /// The frame of a part in the world: turned and shifted by a map, and so many times as large.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "compiler/lsys/derive/word.h"
+#include "compiler/lsys/turtle/flat_model.h"
 
 namespace graftal {
 
@@ -45,6 +46,8 @@ void PlantBuilder::ends(const Turtle& turtle) {
     if (whole_ == PlantModule::none) return;
     PlantModule& whole = plant_.modules[whole_];
     end(whole, turtle);
+    if (axes_.size() == whole_depth_ && axis_.last != PlantModule::none && axis_.last > whole_)
+        whole.last_part = axis_.last;
     if (axes_.size() == whole_depth_) axis_ = {whole_, false, whole.order, whole.rank + 1};
     whole_ = PlantModule::none;
 }
@@ -85,6 +88,7 @@ void PlantBuilder::draws(const DrawnBody& body) {
     if (!body.material.empty()) drawn.material = material(body.material);
     drawn.length = size * body.length;
     drawn.width = size * body.width;
+    drawn.base_width = size * body.base_width;
     drawn.area = size * size * body.area;
     drawn.volume = size * size * size * body.volume;
     drawn.is_measured = body.is_measured;
@@ -97,6 +101,31 @@ void PlantBuilder::draws(const DrawnBody& body) {
         whole.is_measured = whole.is_measured && drawn.is_measured;
     }
     add(std::move(drawn));
+    add_blade(body);
+}
+
+/// The surface of the last row, if that is made of triangles.
+void PlantBuilder::add_blade(const DrawnBody& body) {
+    PlantBlade blade{static_cast<std::uint32_t>(plant_.modules.size() - 1), 0, {}};
+    if (body.organ == Organ::polygon) {
+        blade.shape = static_cast<std::uint32_t>(plant_.shapes.size());
+        std::vector<PlantTriangle>& triangles = plant_.shapes.emplace_back();
+        for (const auto& [a, b, c] : body.triangles)
+            triangles.push_back({frame_.place(a), frame_.place(b), frame_.place(c)});
+    } else if (body.organ == Organ::model && body.is_measured && body.graph) {
+        blade.shape = shape_of(*body.graph, body.model);
+        blade.world_from_shape = {frame_.world_from_part.linear * (frame_.size * body.part_from_model.linear),
+                                  frame_.place(body.part_from_model.translation)};
+    } else {
+        return;
+    }
+    plant_.blades.push_back(blade);
+}
+
+std::uint32_t PlantBuilder::shape_of(const Graph& graph, ObjectId model) {
+    const auto [known, fresh] = shapes_.try_emplace(model, static_cast<std::uint32_t>(plant_.shapes.size()));
+    if (fresh) plant_.shapes.push_back(flat_triangles(graph, model));
+    return known->second;
 }
 
 /// A branch that begins where another has just begun leaves the same module.

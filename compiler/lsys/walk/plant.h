@@ -46,6 +46,8 @@ class PlantBuilder : public WordWitness {
 
     bool has_room();
     PlantModule row(SymbolId symbol, std::span<const double> parameters, const Turtle& turtle);
+    void add_blade(const DrawnBody& body);
+    std::uint32_t shape_of(const Graph& graph, ObjectId model);
     void add(PlantModule row);
     void end(PlantModule& row, const Turtle& turtle) const;
     std::uint16_t name_of_symbol(SymbolId symbol);
@@ -56,6 +58,7 @@ class PlantBuilder : public WordWitness {
     Diagnostics& diagnostics_;
     Plant plant_;
     std::unordered_map<SymbolId, std::uint16_t> names_;
+    std::unordered_map<ObjectId, std::uint32_t> shapes_; ///< of models
     Axis axis_;
     std::vector<Axis> axes_; ///< of the branches under way
     // The module of the word under way:

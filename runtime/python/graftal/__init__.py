@@ -237,6 +237,29 @@ class Model:
             table[key] = value
         return table
 
+    def measures(
+        self,
+        ground_area: Optional[float] = None,
+        irradiance: bool = False,
+        samples: int = 64,
+        progress: Optional[Progress] = None,
+    ) -> "dict[str, Any]":
+        """Measures of the plant: what `graftal stats --plant --json` prints; `graftal stats --help` explains the keys.
+
+        `ground_area`: for the leaf area index and the share of light, in square units of the model; else the crown's convex
+        hull from above. `irradiance`: traces the light on each organ, by at most so many `samples`, as far as limits(work_s=)
+        allows. Then ["light"]["organs"] is a structured array with the rows of plant(): irradiance, where an open horizontal
+        plane has 1, irradiance_error, absorbed, and sunlit, a share (NaN where nothing is known).
+        """
+        text, organs = self._model.measures(ground_area, irradiance, samples, progress)
+        measures = json.loads(text)
+        if irradiance:
+            table = np.empty(len(organs["irradiance"]), dtype=[(key, value.dtype) for key, value in organs.items()])
+            for key, value in organs.items():
+                table[key] = value
+            measures["light"]["organs"] = table
+        return measures
+
     def points(self, count: int, progress: Optional[Progress] = None) -> "tuple[np.ndarray, np.ndarray]":
         """Points by random iteration: places (count, 3) float32 in the model's units, and colours (count, 3) uint8, sRGB.
 
@@ -258,6 +281,7 @@ class Model:
         instancing: bool = False,
         plotter: bool = False,
         most_bytes: int = 1 << 30,
+        irradiance: bool = False,
     ) -> None:
         """Writes a picture (.png, .exr), a scene for POV-Ray (.pov, .inc), or a file for another program (.usda, .gltf, .glb,
         .obj, .ply, .stl, .svg, .pbrt, .xml), or the plant as data (.csv, .json, .mtg).
@@ -265,7 +289,8 @@ class Model:
         `engine`, of pictures: "native" or "povray". What follows is for other programs, each for some formats only, as the
         options of `graftal export` are. `unit_mm`: what a unit of the model measures, in millimetres. `most_bytes`: of
         the file. If the whole model takes more, graftal leaves out small parts until the file has no more (by default 128
-        MiB), with a ModelWarning; if limits() has set error_px, it refuses the model.
+        MiB), with a ModelWarning; if limits() has set error_px, it refuses the model. `irradiance`: the light on each organ of
+        a plant, as measures() has it.
         """
         if engine not in ("native", "povray"):
             raise ValueError(f"engine: {engine!r} is neither 'native' nor 'povray'")
@@ -276,7 +301,7 @@ class Model:
         elif name.endswith((".png", ".exr")):
             self._model.render_to(name, engine, progress)
         else:
-            self._model.export_to(name, unit_mm, levels, nodes, instancing, plotter, most_bytes, progress)
+            self._model.export_to(name, unit_mm, levels, nodes, instancing, plotter, most_bytes, irradiance, progress)
 
     def _repr_png_(self) -> bytes:
         """The picture that a notebook shows of a model."""

@@ -32,7 +32,7 @@ std::shared_ptr<const Plant> plant_of(const std::string& text, LowerOptions opti
 }
 
 std::string file_of(const Plant& plant, const char* ending) {
-    return find_plant_format(ending)->text(plant, UINT64_MAX).value_or("");
+    return find_plant_format(ending)->text({plant, tree_of(plant)}, UINT64_MAX).value_or("");
 }
 
 /// "F(1) A<0 B+0:1": each module, its parent, the order of a branch.
@@ -225,9 +225,9 @@ TEST(Plants, AreWrittenInDecimals) {
     EXPECT_EQ(mtg.find("e-", mtg.find("\nMTG:")), std::string::npos);
     EXPECT_NE(mtg.find("\t20000000000000000\t"), std::string::npos);
     EXPECT_NE(mtg.find("\t0.000000001\n"), std::string::npos);
-    EXPECT_FALSE(find_plant_format(".mtg")->text(*plant, 100));
-    EXPECT_FALSE(find_plant_format(".csv")->text(*plant, 100));
-    EXPECT_FALSE(find_plant_format(".json")->text(*plant, 100));
+    EXPECT_FALSE(find_plant_format(".mtg")->text({*plant, tree_of(*plant)}, 100));
+    EXPECT_FALSE(find_plant_format(".csv")->text({*plant, tree_of(*plant)}, 100));
+    EXPECT_FALSE(find_plant_format(".json")->text({*plant, tree_of(*plant)}, 100));
 }
 
 /// A random bracketed word of letters.

@@ -4,6 +4,7 @@
 #include "runtime/export/plant_files.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
+#include "tools/graftal/commands/plant_stats.h"
 #include "tools/graftal/options/export.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
@@ -15,10 +16,18 @@ namespace {
 /// The modules of an L-system as data.
 int run_plant(const Options& options, const PlantFormat& format) {
     Compilation compilation;
-    CommandSession session(options, options.operands.front());
+    CommandSession session(options, options.operands.front(), Keep::for_views);
+    ProgressBar bar(options.irradiance && !options.quiet);
+    const Interruption interruption;
+    session.set_control(watched(interruption, bar));
+    const PlantLightOptions light = light_options(options);
+    RenderOptions render = options.render;
+    render.compile = inspecting(options, true);
     const std::optional<std::string> written =
-        export_plant(session, inspecting(options, true), format, export_options(options).file, compilation);
-    const int status = conclude(options, compilation);
+        export_plant(session, render, format, export_options(options).file,
+                     options.irradiance ? &light : nullptr, compilation);
+    bar.clear();
+    const int status = conclude(options, compilation, interruption.signal());
     if (written && status == exit_done && !options.quiet)
         say(fmt::format("{}: {}\n", options.render.output, *written));
     return status;

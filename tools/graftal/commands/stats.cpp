@@ -2,11 +2,13 @@
 #include "compiler/detail/work.h"
 #include "compiler/session/stages.h"
 #include "tools/graftal/commands.h"
+#include "tools/graftal/commands/plant_stats.h"
 #include "tools/graftal/report.h"
 
 namespace graftal {
 
 int run_stats(const Options& options) {
+    if (options.plant) return run_plant_stats(options);
     Compilation compilation;
     StageOptions compile = inspecting(options, true);
     compile.lower.may_draw_nothing = true;

@@ -17,6 +17,7 @@ struct OptionGroup {
 const std::vector<OptionGroup>& option_groups() {
     static const std::vector<OptionGroup> groups = {
         {"General", {"--output", "--json", "--name", "--quiet", "--help"}},
+        {"Plant", {"--plant", "--irradiance", "--ground-area"}},
         {"Animation", {"--frames", "--fps", "--turn", "--ease", "--shutter", "--keep-frames"}},
         {"Points",
          {"--points", "--color", "--exposure", "--gamma", "--palette", "--ground", "--light", "--glow",

@@ -79,6 +79,11 @@ void add_export(CLI::App& app, Options& options) {
     app.add_flag("--plotter", file.plotter,
                  fmt::format("Draw each line once, with a pen that is lifted as little as may be ({})",
                              endings_with(&ExportFormat::has_plotter)));
+    add_irradiance(app, options);
+    add_work(app, options,
+             fmt::format("Limit of the work for {}, roughly in seconds of one processor (default {:g}); with "
+                         "--irradiance as much again, for the light",
+                         plant_endings(), inspecting_seconds));
     add_camera(app, options);
     add_error(app, options);
     add_plain_light(app, options);
@@ -92,7 +97,8 @@ void add_export(CLI::App& app, Options& options) {
                "  graftal export tree.lsys -o tree.obj\n"
                "  graftal export sponge.rifs --steps 3 --unit 20mm -o sponge.stl\n"
                "  graftal export fern.rifs --error 2 -o fern.ply\n"
-               "  graftal export plant.lsys -o plant.csv                # its modules, for R or pandas");
+               "  graftal export plant.lsys -o plant.csv                # its modules, for R or pandas\n"
+               "  graftal export plant.lsys --irradiance -o plant.csv   # and the light on each");
 }
 
 std::string complete_export(Options& options) {
@@ -109,6 +115,8 @@ std::string complete_export(Options& options) {
         const std::string vain = vain_plant_wish(*plant, options.file, finds_parts);
         return vain.empty() ? "" : "--" + vain;
     }
+    if (options.irradiance)
+        return fmt::format("--irradiance is for {}, not for {}", plant_endings(), format->extension);
     if (const ExportWish* const wish = find_vain_wish(*format, options.file))
         return fmt::format("--{} is for {}, not for {}", wish->option, endings_with(wish->has),
                            format->extension);

@@ -9,6 +9,7 @@
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/number_range.h"
 #include "compiler/support/printable.h"
+#include "runtime/plants/plant_light.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/help/usage_errors.h"
 #include "tools/graftal/options/sweep_values.h"
@@ -238,6 +239,19 @@ void add_inspecting_work(CLI::App& app, Options& options) {
         fmt::format("Limit of the work, roughly in seconds of one processor; graftal refuses a model that "
                     "takes more (default {})",
                     inspecting_seconds));
+}
+
+void add_irradiance(CLI::App& app, Options& options) {
+    app.add_flag("--irradiance", options.irradiance,
+                 "Trace the light on each organ of the plant: of the model's sky and suns, or of a white sky "
+                 "where it names no light. An open horizontal plane has 1");
+    add_value(
+        app, "--samples", "N",
+        fmt::format("With --irradiance: most samples of each organ, as far as --work allows (default {})",
+                    PlantLightOptions().most_samples),
+        "a whole number from 4 to 65536",
+        [](const std::string& text) { return parse_whole(text, 4, 65'536); },
+        [&options](std::uint64_t samples) { options.render.samples = static_cast<int>(samples); });
 }
 
 void add_view(CLI::App& app, Options& options) {

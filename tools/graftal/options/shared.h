@@ -44,6 +44,8 @@ void add_work(CLI::App& app, Options& options, const std::string& help);
 void add_inspecting_work(CLI::App& app, Options& options);
 /// Options of add_camera(), and those for how much of the model is drawn.
 void add_view(CLI::App& app, Options& options);
+/// The light on a plant's organs.
+void add_irradiance(CLI::App& app, Options& options);
 /// `--bits`, of a PNG for people.
 void add_bits(CLI::App& app, Options& options);
 /// Options of commands that make pictures.

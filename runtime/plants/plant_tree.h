@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compiler/lower/plant.h"
+
+namespace graftal {
+
+/// Whether the module is drawn as a segment that has a length.
+inline bool is_segment(const PlantModule& module) {
+    return module.organ == Organ::segment && module.length > 0;
+}
+
+/// Whether the module is drawn as a blade: a polygon, a disc, or a model made of triangles only.
+inline bool is_blade(const PlantModule& module) {
+    return module.organ == Organ::polygon || module.organ == Organ::disc ||
+           (module.organ == Organ::model && module.is_measured);
+}
+
+/// The tree of a plant's segments. All vectors have an entry for each module of the plant.
+struct PlantTree {
+    /// The segment that bears the module, or that it follows; PlantModule::none: it stands at the root.
+    std::vector<std::uint32_t> bearer;
+    /// Strahler's order of a segment (Strahler 1957, "Quantitative analysis of watershed geomorphology"): 1
+    /// of one that bears no segment; else the largest of those that it bears, and one more where that is
+    /// there twice. A module that is drawn as several segments has the largest of theirs; others have 0.
+    std::vector<std::uint16_t> strahler;
+    /// The length of segments from the root to the end of the module.
+    std::vector<double> path;
+};
+
+/// O(modules).
+PlantTree tree_of(const Plant& plant);
+
+} // namespace graftal

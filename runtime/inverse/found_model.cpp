@@ -114,7 +114,7 @@ std::string text_of(const FoundModel& found, const TargetPicture& picture, const
     std::string text = fmt::format(
         "# {} map{} that graftal found for the picture {} of {}x{} pixels:\n"
         "#   {}\n"
-        "# Intersection over union: {:.3f}, within one cell {:.3f}. A cell has {} pixel{}.\n"
+        "# Intersection over union: {:.3f}, within one cell {:.3f}. A cell is {} pixel{} wide.\n"
         "# Chamfer distance {:.2f} cells. Contractivity {:.4f}. Bound by the collage theorem: {:.1f} cells.\n"
         "rifs found {{\n  codes 2d {{\n    #    a b c d e f p\n",
         found.maps.size(), found.maps.size() == 1 ? "" : "s", name, picture.width, picture.height,

@@ -208,7 +208,7 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
     }
     note_native(prepared, why, compilation);
     std::optional<NativeReport> drawn = trace_model(prepared, options, preparing, cancel, compilation);
-    if (drawn) drawn->whole_seconds = preparing.seconds();
+    if (drawn) drawn->whole_seconds = options.seconds_before + preparing.seconds();
     return drawn ? std::optional(report_of(*drawn)) : std::nullopt;
 }
 

@@ -295,8 +295,8 @@ std::optional<NativeReport> render_natively(PictureSession& session, const Rende
     std::optional<NativeReport> report =
         trace_model(model, options, preparing, session.control().cancel, compilation);
     if (report) {
-        report->first_picture_seconds += before;
-        report->whole_seconds = whole.seconds();
+        report->first_picture_seconds += options.seconds_before + before;
+        report->whole_seconds = options.seconds_before + whole.seconds();
     }
     return report;
 }

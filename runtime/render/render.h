@@ -51,6 +51,7 @@ struct RenderOptions : PictureWishes {
     bool unconfined = false;  ///< PovrayJob::unconfined
     std::string keep;         ///< a directory for the scene, to stay; empty: a temporary one
     std::function<void(const DrawProgress&)> on_progress;
+    double seconds_before = 0; ///< that the summary shall count, too: a program's before it draws
     /// Called before the picture starts.
     std::function<void(const DrawStart&)> on_start;
 

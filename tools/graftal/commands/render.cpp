@@ -6,6 +6,7 @@
 #include "runtime/render/povray_engine.h"
 #include "runtime/render/render.h"
 #include "runtime/render/scene_files.h"
+#include "runtime/render/stopwatch.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
@@ -54,12 +55,14 @@ int run_render(const Options& options) {
     };
 
     Compilation compilation;
+    const Stopwatch watch;
     bar.show("compiling...");
     CommandSession session(options, options.operands.front());
     const bool compiled = options.engine->compile(session, render.compile, compilation);
     const Interruption interruption; // from here on something may be half written
     session.set_control({interruption.flag(), {}});
     std::optional<DrawReport> report;
+    render.seconds_before = watch.seconds();
     if (compiled) report = options.engine->draw(session, render, compilation);
     bar.clear();
     const int status = conclude(options, compilation, interruption.signal());

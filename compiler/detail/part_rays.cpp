@@ -12,6 +12,7 @@
 #include "compiler/detail/least_width.h"
 #include "compiler/detail/mesh/limit_normal.h"
 #include "compiler/detail/piece.h"
+#include "compiler/detail/work.h"
 #include "compiler/graph/path.h"
 #include "compiler/primitives/intersect.h"
 
@@ -156,10 +157,16 @@ void PartRays::meet(const At& at, const Primitive& primitive, const Affine& worl
     const double speed = largest_entry(direction);
     if (!(speed > 0)) return;
     direction /= speed;
+    // Steps in a mesh for a part gone by: what either takes.
+    constexpr auto steps_a_part =
+        static_cast<std::uint64_t>(WorkRates::ray_steps / WorkRates::parts_gone_by / RayWork::mesh_step);
     PrimitiveHit hit;
-    if (!intersect(primitive, {leaf_from_world(ray_(base)), direction},
-                   {(least_ - base) * speed, (best_.t - base) * speed}, hit))
-        return;
+    const std::uint64_t left = work_limit_ > work_ ? work_limit_ - work_ : 0;
+    const bool met =
+        intersect(primitive, {leaf_from_world(ray_(base)), direction},
+                  {(least_ - base) * speed, (best_.t - base) * speed}, hit, steps_a_part * (left + 1));
+    work_ += hit.steps / steps_a_part;
+    if (!met) return;
     found_ = true;
     best_.t = base + hit.t / speed;
     best_.part = at.part;

@@ -1,7 +1,9 @@
 #include "compiler/detail/self_shadow.h"
 
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -12,6 +14,7 @@
 #include "compiler/detail/shadow/coverage.h"
 #include "compiler/graph/path.h"
 #include "compiler/primitives/intersect.h"
+#include "compiler/primitives/triangle_mesh.h"
 #include "tests/unit/detail/models.h"
 
 namespace graftal {
@@ -123,6 +126,30 @@ TEST(PartRays, MeetWhatTheLeavesOneByOneDo) {
         EXPECT_NEAR(glm::length(hit.normal), 1, 1e-9) << i;
     }
     EXPECT_GT(hits, 100);
+}
+
+/// Slivers in all directions, none of which the ray meets though it goes through their boxes: these are work.
+TEST(PartRays, StepsInAMeshAreWork) {
+    MeshData data;
+    constexpr std::uint32_t count = 200'000;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const auto at = [&](double k) {
+            return Vec3(std::sin(1.1 * i + k), std::sin(2.3 * i + 2 * k), std::sin(3.7 * i + 5 * k));
+        };
+        const Vec3 from = at(0);
+        data.vertices.insert(data.vertices.end(), {from, at(1), from + Vec3(1e-9)});
+        data.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    const Primitive mesh{PrimitiveKind::mesh,
+                         std::make_shared<const TriangleMesh>("slivers", std::move(data))};
+    const CutGraph cut = with_proxies(nested(mesh, {Affine()}, 1));
+    const View view = view_of(1);
+    const Projection projection(view, {}, 1e-3, nearest_to_eye(cut));
+    PartRays rays(cut, projection, unlimited_steps, 0, true);
+    PartHit hit;
+    rays.closest({{-5, 0.5, 0.1}, {1, 0, 0}}, 0, hit);
+    EXPECT_GT(rays.work(), 10'000u);
+    EXPECT_LT(rays.work(), 30'000u);
 }
 
 // The cubes measure 1.6 pixels, and what is culled at 4 consists of several.

@@ -8,15 +8,25 @@ namespace graftal::v1 {
 namespace {
 
 constexpr std::pair<std::string_view, std::string_view> library_names[] = {
-    {"--antialias", "antialias"}, {"--quality", "quality"},
-    {"--seed", "seed"},           {"--size", "size"},
-    {"--camera", "camera"},       {"--engine", "engine"},
-    {"--error", "error_px"},      {"--instancing", "instancing"},
-    {"--levels", "levels"},       {"--limit", "most_bytes"},
-    {"--memory", "memory"},       {"--nodes", "nodes"},
-    {"--root", "root"},           {"--steps", "steps"},
-    {"--work", "work"},           {"--set", "set"},
+    {"--antialias", "antialias"},
+    {"--quality", "quality"},
+    {"--seed", "seed"},
+    {"--size", "size"},
+    {"--camera", "camera"},
+    {"--engine", "engine"},
+    {"--error", "error_px"},
+    {"--instancing", "instancing"},
+    {"--levels", "levels"},
+    {"--limit", "most_bytes"},
+    {"--memory", "memory"},
+    {"--nodes", "nodes"},
+    {"--root", "root"},
+    {"--steps", "steps"},
+    {"--work", "work"},
+    {"--set", "set"},
     {"--zoom", "zoom"},
+    {"--ground-area", "ground_area"},
+    {"--irradiance", "irradiance"},
 };
 
 constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz-";

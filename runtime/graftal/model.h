@@ -249,8 +249,8 @@ class GRAFTAL_API Model {
     Result<Points> points(std::uint64_t count);
     /// Draws into memory, by the native engine: the pixels of the `.png` that render_to() writes.
     Result<Picture> render();
-    /// Draws into memory what each pixel shows, as `graftal render --aovs -o FILE.exr` writes it: light is not
-    /// denoised.
+    /// Draws into memory what each pixel shows, as `graftal render --aovs -o FILE.exr` writes it: light is
+    /// not denoised.
     Result<Channels> aovs();
     /// Draws into the listener, pass after pass, by the native engine.
     Result<Drawn> draw(const OnTile& listener);

@@ -349,7 +349,8 @@ class Writer {
         return !ways.empty();
     }
 
-    /// The block `final`, of what is shown of each point: one map, in which a random number chooses among ways.
+    /// The block `final`, of what is shown of each point: one map, in which a random number chooses among
+    /// ways.
     bool write_last(const Map& map) {
         std::vector<Way> ways = ways_of(map);
         if (ways.empty()) return false;

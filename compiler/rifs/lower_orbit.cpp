@@ -291,48 +291,52 @@ void lower_orbit_file(const RifsFile& tree, Lowering& lowering) {
     lowering.notes.orbit = std::make_shared<const OrbitModel>(std::move(model));
 }
 
-std::optional<Vec3> apply(const OrbitFormulas& map, Vec3 point, std::span<const double> draws,
-                          std::vector<double>& slots) {
+namespace {
+
+/// Computes the formulas in order, as far as they have values: how many do. `values` then holds those of x,
+/// y, z and of the names, and behind them the random numbers of the formula that has none.
+std::size_t compute(const OrbitFormulas& map, Vec3 point, std::span<const double> draws,
+                    std::vector<double>& values, Vec3& image) {
     const std::size_t own = map.codes.size() - 3;
-    slots.clear();
+    values.clear();
     for (int axis = 0; axis < 3; ++axis)
-        slots.push_back(point[axis]);
-    Vec3 result;
+        values.push_back(point[axis]);
     for (std::size_t i = 0; i < map.codes.size(); ++i) {
         // A formula finds its random numbers behind the names that it may use.
-        const std::size_t names = slots.size();
-        slots.insert(slots.end(), draws.begin(), draws.begin() + map.draws[i]);
+        const std::size_t names = values.size();
+        values.insert(values.end(), draws.begin(), draws.begin() + map.draws[i]);
         draws = draws.subspan(map.draws[i]);
-        const std::optional<double> value = map.codes[i].value(slots);
-        if (!value) return std::nullopt;
-        slots.resize(names);
+        const std::optional<double> value = map.codes[i].value(values);
+        if (!value) return i;
+        values.resize(names);
         if (i < own)
-            slots.push_back(*value);
+            values.push_back(*value);
         else
-            result[static_cast<int>(i - own)] = *value;
+            image[static_cast<int>(i - own)] = *value;
     }
-    return result;
+    return map.codes.size();
+}
+
+} // namespace
+
+std::optional<Vec3> apply(const OrbitFormulas& map, Vec3 point, std::span<const double> draws,
+                          std::vector<double>& slots) {
+    Vec3 image;
+    if (compute(map, point, draws, slots, image) < map.codes.size()) return std::nullopt;
+    return image;
 }
 
 void OrbitModel::report(std::size_t number, Vec3 point, std::span<const double> draws,
                         Diagnostics& diagnostics) const {
     const OrbitFormulas& map = number < maps.size() ? maps[number] : *last;
-    std::vector<double> slots;
-    for (int axis = 0; axis < 3; ++axis)
-        slots.push_back(point[axis]);
-    std::vector<std::string_view> visible = {"x", "y", "z"};
-    const std::size_t own = map.codes.size() - 3;
-    for (std::size_t i = 0; i < map.codes.size(); ++i) {
-        const std::size_t names = slots.size();
-        slots.insert(slots.end(), draws.begin(), draws.begin() + map.draws[i]);
-        draws = draws.subspan(map.draws[i]);
-        const std::optional<double> value = map.codes[i].value(slots);
-        if (!value) return map.codes[i].report(slots, lets, visible, diagnostics);
-        slots.resize(names);
-        if (i >= own) continue;
-        slots.push_back(*value);
-        visible.push_back(map.names[3 + i]);
-    }
+    std::vector<double> values;
+    Vec3 image;
+    const std::size_t fault = compute(map, point, draws, values, image);
+    if (fault == map.codes.size()) return;
+    const std::vector<std::string_view> visible(
+        map.names.begin(),
+        map.names.begin() + static_cast<std::ptrdiff_t>(std::min(3 + fault, map.names.size())));
+    map.codes[fault].report(values, lets, visible, diagnostics);
 }
 
 } // namespace graftal

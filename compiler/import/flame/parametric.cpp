@@ -58,6 +58,10 @@ constexpr Part shared[] = {
 
 // Formulas of flam3 3.1 (Draves and Reckase, appendix, has most).
 const std::vector<Row>& rows() {
+    // Random numbers of blurs: a turn, and a distance up to 1, or nearly normal as the sum of four.
+    static const std::vector<Part> even_blur = {{"turn", "random(0, 360)"}, {"far", "random(0, 1)"}};
+    static const std::vector<Part> gaussian_blur = {
+        {"turn", "random(0, 360)"}, {"far", "random(0, 1) + random(0, 1) + random(0, 1) + random(0, 1) - 2"}};
     static const std::vector<Row> all = {
         {"rings", {}, {{"d", "e*e + 1e-10"}, {"n", "mod(r + d, 2*d) - d + r * (1 - d)"}}, "n * ca", "n * sa"},
         {"fan",
@@ -288,6 +292,18 @@ const std::vector<Row>& rows() {
           {"n", "(corners * (1 / (cos(deg * a) + 1e-10) - 1) + circle) / (r2^(power / 2) + 1e-10)"}},
          "n * u",
          "n * v"},
+        {"blur", {}, {}, "far * cos(turn)", "far * sin(turn)", even_blur},
+        {"noise", {}, {}, "u * far * cos(turn)", "v * far * sin(turn)", even_blur},
+        {"gaussian_blur", {}, {}, "far * cos(turn)", "far * sin(turn)", gaussian_blur},
+        {"pre_blur", {}, {}, "far * cos(turn)", "far * sin(turn)", gaussian_blur},
+        {"pre_gaussian_blur", {}, {}, "far * cos(turn)", "far * sin(turn)", gaussian_blur},
+        {"sineblur",
+         {},
+         {},
+         "far * cos(turn)",
+         "far * sin(turn)",
+         {{"turn", "random(0, 360)"}, {"far", "acos(random(-1, 1)) / 180"}}},
+        {"square", {}, {}, "across", "up", {{"across", "random(-1/2, 1/2)"}, {"up", "random(-1/2, 1/2)"}}},
         {"pie",
          {{"slices", "6"}, {"rotation", "0"}, {"thickness", "0.5"}},
          {{"a", "rotation + 2*pi * (floor(slice + 0.5) + thickness * part) / slices"}},

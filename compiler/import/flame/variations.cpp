@@ -23,12 +23,6 @@ std::string cosine(const std::string& radians) {
     return fmt::format("cos({} * ({}))", degrees, radians);
 }
 
-/// A random turn, and a random length: up to 1, or by four numbers nearly a normal one.
-const char* const draws_of_blur = "turn# = random(0, 360), far# = random(0, 1)";
-const char* const draws_of_gauss =
-    "turn# = random(0, 360), far# = random(0, 1) + random(0, 1) + random(0, 1) + "
-    "random(0, 1) - 2";
-
 using Maker = std::vector<Formula> (*)(const Affine&);
 
 const std::map<std::string_view, Maker, std::less<>>& formula_table() {
@@ -161,36 +155,6 @@ const std::map<std::string_view, Maker, std::less<>>& formula_table() {
         {"hemisphere",
          [](const Affine&) {
              return std::vector<Formula>{{"u / sqrt(r2 + 1)", "v / sqrt(r2 + 1)"}};
-         }},
-        {"blur",
-         [](const Affine&) {
-             return std::vector<Formula>{{"far# * cos(turn#)", "far# * sin(turn#)", draws_of_blur}};
-         }},
-        {"gaussian_blur",
-         [](const Affine&) {
-             return std::vector<Formula>{{"far# * cos(turn#)", "far# * sin(turn#)", draws_of_gauss}};
-         }},
-        {"pre_blur",
-         [](const Affine&) {
-             return std::vector<Formula>{{"far# * cos(turn#)", "far# * sin(turn#)", draws_of_gauss}};
-         }},
-        {"pre_gaussian_blur",
-         [](const Affine&) {
-             return std::vector<Formula>{{"far# * cos(turn#)", "far# * sin(turn#)", draws_of_gauss}};
-         }},
-        {"noise",
-         [](const Affine&) {
-             return std::vector<Formula>{{"u * far# * cos(turn#)", "v * far# * sin(turn#)", draws_of_blur}};
-         }},
-        {"sineblur",
-         [](const Affine&) {
-             return std::vector<Formula>{{"far# * cos(turn#)", "far# * sin(turn#)",
-                                          "turn# = random(0, 360), far# = acos(random(-1, 1)) / 180"}};
-         }},
-        {"square",
-         [](const Affine&) {
-             return std::vector<Formula>{
-                 {"across#", "up#", "across# = random(-1/2, 1/2), up# = random(-1/2, 1/2)"}};
          }},
         {"cross",
          [](const Affine&) {

@@ -158,7 +158,7 @@ class SystemReader {
     std::optional<System> read(const ForeignModel& model) {
         const std::string_view text = file_.text();
         const std::size_t brace = text.find('{', model.span.begin);
-        const std::optional<std::size_t> bare = bare_columns(text);
+        const auto bare = brace == std::string_view::npos ? bare_columns(text) : std::nullopt;
         const std::size_t begin = bare ? 0 : std::min<std::size_t>(brace + 1, model.span.end);
         const std::size_t end = bare ? text.size() : model.span.end - 1; // the '}'
         std::vector<Line> lines = lines_of(text, begin, end);

@@ -142,7 +142,7 @@ TEST_F(Points, OrbitsShowWhatFinalMakesOfEachPoint) {
         sum += place.x;
         roots += std::sqrt(place.x);
     }
-    // Of x even in [0, 1]: had it gone on from what is shown, it would have left.
+    // Means of x evenly in [0, 1]; an orbit that goes on from what is shown would leave it.
     EXPECT_NEAR(roots / static_cast<double>(places.size()), 1, 0.01);
     EXPECT_NEAR(sum / static_cast<double>(places.size()), 4.0 / 3, 0.02);
     EXPECT_EQ(read("o.ply").substr(read("o.ply").size() - 3), std::string("\xff\0\0", 3));

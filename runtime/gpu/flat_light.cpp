@@ -70,7 +70,7 @@ void add_material(const Material& material, const Texture* texture, FlatModel& f
     add(material.diffuse, material.specular, material.roughness, material.reflection);
     add(material.translucency, material.emission, material.metallic, material.transparency);
     const std::uint32_t pattern = material.pattern ? add_pattern(material.pattern, flat) : NONE;
-    flat.patterned = flat.patterned || material.pattern;
+    flat.features.patterned = flat.features.patterned || material.pattern;
     flat.materials.emplace_back(material.filter, material.ior, material.blur, flat_bits(pattern));
     flat.materials.push_back(flat_four(interior.absorbed, interior.ior));
     if (texture)
@@ -243,8 +243,9 @@ void add_light(const FlatRequest& request, FlatModel& flat) {
         scene.haze_rgb = flat_four(view.haze->rgb);
     }
     scene.ambient.w = static_cast<float>(view.film.exposure);
-    scene.looks = {view.film.soft ? 1 : 0, opaque ? 1 : 0, 0, 0};
-    if (flat.patterned) add_waves(flat);
+    flat.features.glassy = !opaque;
+    scene.looks = {view.film.soft ? 1 : 0, 0, 0, 0};
+    if (flat.features.patterned) add_waves(flat);
     scene.tables.x = static_cast<std::uint32_t>(flat.texels.size());
     const PixelFilter filter;
     static_assert(PixelFilter::steps == FILTER_STEPS);

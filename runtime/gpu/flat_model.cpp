@@ -50,11 +50,17 @@ bool is_similarity(const FlatEdge& edge) {
     return true;
 }
 
+/// Whether rays keep their direction in the child's frame.
+bool keeps_directions(const FlatEdge& edge) {
+    for (std::size_t i = 0; i < 9; ++i)
+        if (!(std::abs(edge.child_from_parent[i].high * edge.stretch - (i % 4 == 0 ? 1.0f : 0.0f)) < 1e-6f))
+            return false;
+    return true;
+}
+
 class Flattener {
   public:
-    /// `pictured`: some material has a picture.
-    Flattener(const FlatGraph& graph, bool pictured, FlatModel& flat)
-        : graph_(graph), pictured_(pictured), flat_(flat) {}
+    Flattener(const FlatGraph& graph, FlatModel& flat) : graph_(graph), flat_(flat) {}
 
     /// False where that would take too much memory.
     bool run(Vec3 eye, const Box& drawn, std::uint32_t root_steps, std::uint64_t most_bytes) {
@@ -95,8 +101,13 @@ class Flattener {
             flat_.parts.emplace_back(m[row].high, m[3 + row].high, m[6 + row].high, edge.origin[row].high);
         flat_.parts.emplace_back(edge.stretch, flat_bits(edge.child),
                                  flat_bits(material_number(edge.material)), flat_bits(edge.levels));
-        flat_.stretched =
-            flat_.stretched || (graph_.nodes[edge.child].primitive == flat_none && !is_similarity(edge));
+        const std::uint32_t primitive = graph_.nodes[edge.child].primitive;
+        FlatModel::Features& features = flat_.features;
+        features.stretched = features.stretched || (primitive == flat_none && !is_similarity(edge));
+        if (primitive == flat_none || meshes_[primitive] != NONE)
+            features.even = features.even && keeps_directions(edge);
+        else
+            features.kinds |= 1u << static_cast<unsigned>(graph_.primitives[primitive].kind());
         flat_.looks.push_back(of_paint(edge.tint));
         flat_.looks.emplace_back(edge.turns, 0, 0, 0);
     }
@@ -164,7 +175,7 @@ class Flattener {
                                             mesh.vertices[corners[2]]};
             const Vec3 level = glm::normalize(glm::cross(at[1] - at[0], at[2] - at[0]));
             const std::array<TexturePoint, 3> uv =
-                pictured_ ? texture_coordinates(primitive, {}, at) : std::array<TexturePoint, 3>{};
+                flat_.features.pictured ? texture_coordinates(primitive, {}, at) : std::array<TexturePoint, 3>{};
             Box box;
             for (std::size_t k = 0; k < 3; ++k) {
                 box.include(at[k]);
@@ -180,7 +191,6 @@ class Flattener {
     }
 
     const FlatGraph& graph_;
-    const bool pictured_;
     FlatModel& flat_;
     std::vector<std::uint32_t> meshes_; ///< by primitive
 };
@@ -227,11 +237,11 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
         return std::nullopt;
     }
     FlatModel flat;
-    const bool pictured = std::ranges::any_of(request.textures.of_material,
-                                              [](const auto& texture) { return texture != nullptr; });
+    flat.features.pictured = std::ranges::any_of(request.textures.of_material,
+                                                 [](const auto& texture) { return texture != nullptr; });
     constexpr double far = flat_endless;
     const bool fits =
-        Flattener(*graph, pictured, flat)
+        Flattener(*graph, flat)
             .run(request.view.camera.location,
                  ground.layers.cut.nodes[graph->root].unbounded ? Box{Vec3(-far), Vec3(far)}
                                                                 : ground.bounds.node[graph->root],

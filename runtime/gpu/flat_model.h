@@ -27,8 +27,15 @@ struct FlatModel {
     std::vector<glm::vec4> boxes, parts, nodes, looks, materials, triangles;
     std::vector<float> texels;
     std::vector<std::uint32_t> source; ///< by node: that of the prepared graph
-    bool stretched = false;            ///< some map of an object scales unevenly
-    bool patterned = false;            ///< some material has a solid pattern
+    /// The kernel that a model gets knows only what the model has.
+    struct Features {
+        bool stretched = false; ///< some map of an object scales unevenly
+        bool even = true;       ///< none turns, mirrors or stretches
+        bool patterned = false; ///< some material has a solid pattern
+        bool pictured = false;  ///< some material has a picture
+        bool glassy = false;    ///< some material lets light through
+        std::uint32_t kinds = 0; ///< of primitives that rays meet as they are: a bit each
+    } features;
     kernel_layout::Scene scene{};
 
     std::uint64_t bytes() const;

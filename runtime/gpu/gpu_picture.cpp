@@ -39,8 +39,10 @@ GpuPicture::GpuPicture(Gpu& gpu, ImageSize size, const Tile& window, const Sampl
     : gpu_(gpu), size_(size), window_(window), samples_(samples) {}
 
 Status GpuPicture::prepare(const FlatModel& model, std::uint32_t frames) {
-    const std::array<std::uint32_t, 5> constants = {frames, samples_.aovs, model.stretched ? frames : 2,
-                                                    model.scene.widths.z > 0, model.patterned};
+    const FlatModel::Features& has = model.features;
+    const std::array<std::uint32_t, 9> constants = {
+        frames,        samples_.aovs, has.stretched, has.even, model.scene.widths.z > 0,
+        has.patterned, has.pictured,  has.glassy,    has.kinds};
     Status status = gpu_.load(picture_spirv, film_binding + 1, sizeof(Job), constants);
     const std::span<const std::byte> scene = std::as_bytes(std::span(&model.scene, 1));
     for (const std::span<const std::byte> bytes :

@@ -85,7 +85,7 @@ struct Scene {
     vec4 limits;   // farthest, least weight, noise in 255ths
     uvec4 counts;  // lamps, root's box, root's steps, bounces
     uvec4 visits;  // most of a ray, more, ground's material, catcher's material
-    uvec4 looks;    // 1 for a soft film, 1 where all is opaque
+    uvec4 looks;    // 1 for a soft film
     uvec4 tables; // the pixel filter's in texels[]; 1 if some texel of a surface is clear; patterns' waves in texels[]
     vec4 eye;     // in the world of the model
     Lamp lamps[MOST_LAMPS];

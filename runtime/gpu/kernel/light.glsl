@@ -55,12 +55,13 @@ float last_ior(Inside inside) {
 }
 
 float relative_ior(Inside inside, vec4 solid) {
-    if (inside.count == 0) return solid.w;
+    if (!GLASS || inside.count == 0) return solid.w;
     if (place_in(inside, solid) < 0) return solid.w / last_ior(inside);
     return (inside.count == 1 ? 1.0f : last_ior(inside)) / solid.w;
 }
 
 float cross_surface(INOUT(Inside) inside, vec4 solid) {
+    if (!GLASS) return 1.0f;
     const int known = place_in(inside, solid);
     if (known >= 0) {
         const bool innermost = known == inside.count - 1;
@@ -77,6 +78,7 @@ float cross_surface(INOUT(Inside) inside, vec4 solid) {
 }
 
 vec3 left_after(Inside inside, float length_of_way) {
+    if (!GLASS) return vec3(1.0f);
     vec3 depth = vec3(0.0f);
     for (int i = 0; i < inside.count; ++i)
         depth += xyz_of(inside.solids[i]);
@@ -180,7 +182,7 @@ void share_light(Inside inside, INOUT(Point) point) {
     if (point.mirrors > 0.0f && material.metallic > 0.0f)
         point.mirrored *= metal_colour(material.metallic, point.rgb, cosine);
     point.through = vec3(0.0f);
-    if (!(material.transparency > 0.0f)) return;
+    if (!GLASS || !(material.transparency > 0.0f)) return;
     point.through = colour_of_pane(material, point.rgb) * (has_coat ? vec3(point.body) : vec3(1.0f) - point.mirrored);
     if (!(dot(vec3(0.297f, 0.589f, 0.114f), point.through) > least)) point.through = vec3(0.0f);
     point.body *= 1.0f - material.transparency;
@@ -327,7 +329,7 @@ bool goes_on(INOUT(Path) path, Point point, float scattered, bool sky_later, INO
     mirror.direction = 2.0f * along * point.facet - point.to_viewer;
     Way pane;
     pane.share = point.through;
-    pane.counts = largest_of(point.through);
+    pane.counts = GLASS ? largest_of(point.through) : 0.0f;
     pane.direction = vec3(0.0f);
     Inside beyond = path.inside;
     if (pane.counts > 0.0f) {
@@ -445,7 +447,7 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
             most = FAR;
         }
         Hit hit;
-        const bool any = to_light && scene.looks.y != 0u;
+        const bool any = to_light && !GLASS;
         const float farthest = min(most, scene.limits.x);
         const bool found = meet_first(from, towards, least, farthest, any, hit);
         bool ends = false;

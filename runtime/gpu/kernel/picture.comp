@@ -15,8 +15,13 @@
 #define min_uint(a, b) min(a, b)
 #define LIMIT_LEVELS 6
 #define LIMIT_RATIO 1.5f
-#define FRAMES Frame frames[MOST_FRAMES];
-#define SPACES mat3 spaces[MOST_SPACES];
+#define float_of(word) uintBitsToFloat(word)
+#define FRAMES \
+    vec4 frame_places[MOST_FRAMES]; \
+    uvec4 frame_marks[MOST_FRAMES]; \
+    vec3 frame_directions[EVEN ? 2 : MOST_FRAMES]; \
+    vec2 frame_sizes[STRETCHED || FAINTS ? MOST_FRAMES : 2];
+#define SPACES mat3 spaces[STRETCHED ? MOST_FRAMES : 2];
 #define STEPS uint steps = 0u, lost = 0u;
 #define WAITING_PATHS Path waiting_paths[MOST_WAITING];
 
@@ -25,10 +30,14 @@
 layout(constant_id = 0) const int MOST_FRAMES = 64;
 const int MOST_LATER = 5 * MOST_FRAMES;
 layout(constant_id = 1) const bool AOVS = false; // in place of light
-layout(constant_id = 2) const int MOST_SPACES = 2; // as many as frames where some map of an object scales unevenly
-const bool STRETCHED = MOST_SPACES > 2;
-layout(constant_id = 3) const bool FAINTS = false; // sets without area are drawn wider than they are
-layout(constant_id = 4) const bool PATTERNS = false; // some material has one
+// Of the model. What it lacks takes neither registers nor memory of a ray.
+layout(constant_id = 2) const bool STRETCHED = false; // some map of an object scales unevenly
+layout(constant_id = 3) const bool EVEN = false;      // no map of an object turns or stretches anything
+layout(constant_id = 4) const bool FAINTS = false;    // sets without area are drawn wider than they are
+layout(constant_id = 5) const bool PATTERNS = false;  // some material has one
+layout(constant_id = 6) const bool PICTURES = false;  // likewise
+layout(constant_id = 7) const bool GLASS = false;     // some material lets light through
+layout(constant_id = 8) const uint KINDS = 0x1ffu;    // of primitives: a bit each
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly restrict buffer Boxes { vec4 all_boxes[]; };

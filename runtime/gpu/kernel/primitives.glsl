@@ -157,14 +157,21 @@ bool meet_torus(vec3 o, vec3 d, float least, float most, OUT(float) t, OUT(vec3)
     return t > least && t < most;
 }
 
+#define HAS_KIND(kind) ((KINDS & (1u << (kind))) != 0u)
+#define HAS_TAPERED ((KINDS & (1u << KIND_CYLINDER | 1u << KIND_CONE | 1u << KIND_FRUSTUM)) != 0u)
+
 bool meet_primitive(uint kind, float shape, vec3 o, vec3 d, float least, float most, OUT(float) t,
                     OUT(vec3) normal) {
-    if (kind == KIND_SPHERE) return meet_sphere(o, d, least, most, t, normal);
-    if (kind == KIND_CUBE) return meet_cube(o, d, least, most, t, normal);
-    if (kind == KIND_TRIANGLE) return meet_triangle(o, d, least, most, t, normal);
-    if (kind == KIND_PLANE) return meet_plane(o, d, least, most, t, normal);
-    if (kind == KIND_TORUS) return meet_torus(o, d, least, most, t, normal);
-    return meet_tapered(shape, o, d, least, most, t, normal);
+    // What the model lacks is not compiled.
+    if (HAS_KIND(KIND_SPHERE) && kind == KIND_SPHERE) return meet_sphere(o, d, least, most, t, normal);
+    if (HAS_KIND(KIND_CUBE) && kind == KIND_CUBE) return meet_cube(o, d, least, most, t, normal);
+    if (HAS_KIND(KIND_TRIANGLE) && kind == KIND_TRIANGLE) return meet_triangle(o, d, least, most, t, normal);
+    if (HAS_KIND(KIND_PLANE) && kind == KIND_PLANE) return meet_plane(o, d, least, most, t, normal);
+    if (HAS_KIND(KIND_TORUS) && kind == KIND_TORUS) return meet_torus(o, d, least, most, t, normal);
+    if (HAS_TAPERED) return meet_tapered(shape, o, d, least, most, t, normal);
+    t = 0.0f;
+    normal = d;
+    return false;
 }
 
 /// A triangle of a mesh: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection" (2013).

@@ -22,13 +22,13 @@ struct Frame {
     float base;
     vec3 direction;
     float unit;
-    float scale; // norm of the map to the world
-    uint steps;  // levels that are left
-    uint part;   // the last on the way
-    uint node;
-    bool cut; // drawn by what stands for its parts
+    float scale;  // norm of the map to the world; the unit, unless STRETCHED
+    float margin; // by which parts may reach out of their boxes, where FAINTS
+    uint steps;   // levels that are left
+    uint part;    // the last on the way
+    int waiting;  // entries that waited when the ray came here
+    bool cut;     // drawn by what stands for its parts
     bool faint;   // what is drawn stands for a set without area
-    float margin; // by which parts may reach out of their boxes
 };
 
 /// Half of what is drawn at least of a set without area, about a point of the world: Projection's
@@ -60,6 +60,54 @@ vec3 rows_transposed(vec4 a, vec4 b, vec4 c, vec3 v) {
     return v.x * xyz_of(a) + v.y * xyz_of(b) + v.z * xyz_of(c);
 }
 
+FRAMES
+
+#define FRAME_CUT (1u << 31)
+#define FRAME_FAINT (1u << 30)
+#define FRAME_PART 0x3fffffffu
+
+/// Keeps a frame as number `at`. The fewer words it takes, the more rays a device has room for.
+void keep(int at, Frame frame) {
+    frame_places[at] = vec4(frame.origin, frame.base);
+    const uint marks = (frame.part & FRAME_PART) | (frame.cut ? FRAME_CUT : 0u) | (frame.faint ? FRAME_FAINT : 0u);
+    frame_marks[at] = uvec4(word_of(frame.unit), frame.steps, marks, uint(frame.waiting));
+    if (!EVEN) frame_directions[at] = frame.direction;
+    if (STRETCHED || FAINTS) frame_sizes[at] = vec2(frame.scale, frame.margin);
+}
+
+/// The frame kept there. `direction`: of the ray in the world.
+Frame kept(int at, vec3 direction) {
+    const vec4 place = frame_places[at];
+    const uvec4 marks = frame_marks[at];
+    Frame frame;
+    frame.origin = xyz_of(place);
+    frame.base = place.w;
+    frame.direction = direction;
+    if (!EVEN) frame.direction = frame_directions[at];
+    frame.unit = float_of(marks.x);
+    frame.scale = frame.unit;
+    frame.margin = 0.0f;
+    if (STRETCHED || FAINTS) {
+        frame.scale = frame_sizes[at].x;
+        frame.margin = frame_sizes[at].y;
+    }
+    frame.steps = marks.y;
+    frame.part = marks.z & FRAME_PART;
+    frame.waiting = int(marks.w);
+    frame.cut = (marks.z & FRAME_CUT) != 0u;
+    frame.faint = (marks.z & FRAME_FAINT) != 0u;
+    return frame;
+}
+
+/// The last part on the way to a kept frame, which is not the first.
+uint part_at(int at) {
+    return frame_marks[at].z & FRAME_PART;
+}
+
+uint node_of(uint part) {
+    return bits_of(parts(part * PART_SIZE + 3u)).y;
+}
+
 /// A normal of a part in the frame that holds it.
 vec3 normal_above(uint part, vec3 normal) {
     const uint first = part * PART_SIZE;
@@ -70,8 +118,6 @@ vec3 normal_above(uint part, vec3 normal) {
 
 /// Boxes and parts that all rays of the thread went to, and parts that they had no room for.
 STEPS
-
-FRAMES
 
 /// The linear parts of the maps from the frames to the world, less the scale, where STRETCHED: the norm of a
 /// product of maps that stretch unevenly is no product.
@@ -97,9 +143,10 @@ mat3 inverse_of(vec3 row0, vec3 row1, vec3 row2) {
     return mat3(x, y, z) / dot(row0, x);
 }
 
-/// The linear map to the world from within frame `at`, by the rows of that into its part.
-mat3 to_world(int at, vec3 row0, vec3 row1, vec3 row2) {
-    const mat3 part = frames[at].scale * inverse_of(row0, row1, row2);
+/// The linear map to the world from within a part, by the rows of that into it. `at`: of the frame that holds it, of
+/// this scale.
+mat3 to_world(int at, float scale, vec3 row0, vec3 row1, vec3 row2) {
+    const mat3 part = scale * inverse_of(row0, row1, row2);
     return STRETCHED ? spaces[at] * part : part;
 }
 
@@ -134,8 +181,9 @@ float most_extent(mat3 space) {
     return max(length(bc), max(length(ca), length(ab))) / abs(dot(space[0], bc));
 }
 
-/// Places a part, whose map has these rows, into the space of frame `at`; the norm of the map to the world.
-float place_space(int at, vec3 row0, vec3 row1, vec3 row2, float stretch) {
+/// Places a part, whose map has these rows, into the space of frame `at`, of this scale; the norm of the map to the
+/// world.
+float place_space(int at, float scale, vec3 row0, vec3 row1, vec3 row2, float stretch) {
     if (at == 0) {
         spaces[1] = mat3(1.0f); // the root's map only scales evenly
         return stretch;
@@ -143,12 +191,13 @@ float place_space(int at, vec3 row0, vec3 row1, vec3 row2, float stretch) {
     const mat3 space = spaces[at] * inverse_of(row0, row1, row2) / stretch;
     const float growth = largest_stretch(space);
     spaces[at + 1] = space / growth;
-    return frames[at].scale * stretch * growth;
+    return scale * stretch * growth;
 }
 
 /// A point of frame `at` in the world. Where no space tells how that is turned: the place of the ray nearest to it.
 vec3 place_of(vec3 point, Frame frame, int at, vec3 origin, vec3 direction) {
-    const float along = dot(point - frame.origin, frame.direction) / dot(frame.direction, frame.direction);
+    float along = dot(point - frame.origin, frame.direction);
+    if (STRETCHED) along /= dot(frame.direction, frame.direction);
     const vec3 place = origin + (frame.base + along * frame.unit) * direction;
     if (!STRETCHED) return place;
     return place + frame.scale * (spaces[at] * (point - frame.origin - along * frame.direction));
@@ -196,14 +245,14 @@ vec4 texel_of(uint material, Site site, float turns) {
 }
 
 bool has_picture(uint material) {
-    return bits_of(materials(material * MATERIAL_SIZE + 5u)).x != NONE;
+    return PICTURES && bits_of(materials(material * MATERIAL_SIZE + 5u)).x != NONE;
 }
 
 /// Whether the surface of a primitive, `part` beyond the way to frame `last`, has none at this site.
 bool is_clear(int last, uint part, Site site) {
     uint material = bits_of(parts(part * PART_SIZE + 3u)).z;
     for (int i = last; i > 0 && material == NONE; --i)
-        material = bits_of(parts(frames[i].part * PART_SIZE + 3u)).z;
+        material = bits_of(parts(part_at(i) * PART_SIZE + 3u)).z;
     if (material == NONE || !has_picture(material)) return false;
     return texel_of(material, site, looks(part * LOOK_SIZE + 1u).x).w > 0.0f;
 }
@@ -213,14 +262,15 @@ void look_along(int last, uint part, bool is_proxy, Site site, INOUT(Hit) hit) {
     vec4 tint = vec4(0.0f, 0.0f, 0.0f, 1.0f);
     vec3 inherited = xyz_of(materials(0u));
     hit.material = 0u;
-    hit.node = frames[last].node;
+    hit.node = last > 0 ? node_of(part_at(last)) : NONE;
     hit.levels = 0u;
     uint above = NONE;
     const int end = is_proxy ? last : last + 1;
     for (int i = 1; i <= end; ++i) {
-        const uint step = i <= last ? frames[i].part : part;
+        const uint step = i <= last ? part_at(i) : part;
         const uvec4 facts = bits_of(parts(step * PART_SIZE + 3u));
-        if (frames[i - 1].cut && (bits_of(nodes(above * NODE_SIZE + NODE_FACTS)).y & NODE_TERMINAL) != 0u) {
+        if ((frame_marks[i - 1].z & FRAME_CUT) != 0u &&
+            (bits_of(nodes(above * NODE_SIZE + NODE_FACTS)).y & NODE_TERMINAL) != 0u) {
             const vec4 mean = nodes(above * NODE_SIZE + NODE_MEAN);
             inherited = xyz_of(mean) + mean.w * inherited;
         }
@@ -234,7 +284,7 @@ void look_along(int last, uint part, bool is_proxy, Site site, INOUT(Hit) hit) {
         above = facts.y;
     }
     if (is_proxy) {
-        const uint node = frames[last].node;
+        const uint node = hit.node;
         const vec4 mean = nodes(node * NODE_SIZE + NODE_STANDIN);
         inherited = xyz_of(mean) + mean.w * inherited;
         const uint finish = bits_of(nodes(node * NODE_SIZE + NODE_LOOK)).x;
@@ -251,14 +301,14 @@ float pattern_size_of(int at, uint part) {
     const uint first = part * PART_SIZE;
     const vec4 extent = nodes(bits_of(parts(first + 3u)).y * NODE_SIZE + NODE_STANDIN);
     if (extent.w == 0.0f) return 1.0f;
-    const mat3 map = to_world(at, xyz_of(parts(first)), xyz_of(parts(first + 1u)), xyz_of(parts(first + 2u)));
+    const mat3 map = to_world(at, kept(at, vec3(0.0f)).scale, xyz_of(parts(first)), xyz_of(parts(first + 1u)), xyz_of(parts(first + 2u)));
     const float a = extent.x * length(map[0]), b = extent.y * length(map[1]), c = extent.z * length(map[2]);
     const float middle = max(min(a, b), min(max(a, b), c));
     return middle > 0.0f && middle < FAR ? exp2(0.5f * floor(2.0f * log2(middle) + 0.5f)) : 1.0f;
 }
 
 /// The limit's normal where the proxy of a frame's node is met (limit_normal() of runtime/trace).
-vec3 limit_normal(int last, float t, vec3 normal) {
+vec3 limit_normal(int last, vec3 direction, float t, vec3 normal) {
     const int most_levels = LIMIT_LEVELS;
     vec3 sum = normal;
     int level = 0;
@@ -266,13 +316,14 @@ vec3 limit_normal(int last, float t, vec3 normal) {
     for (int i = last; i > 0; --i) {
         const float size = length(sum);
         if (!(size > 0.0f)) return normal;
-        sum = size * normal_above(frames[i].part, sum / size);
+        sum = size * normal_above(part_at(i), sum / size);
         if (i == 1 || level == most_levels) continue;
-        const Frame parent = frames[i - 1];
-        if ((bits_of(nodes(parent.node * NODE_SIZE + NODE_FACTS)).y & NODE_UNENDING) == 0u) continue;
+        const Frame parent = kept(i - 1, direction);
+        const uint node = node_of(parent.part);
+        if ((bits_of(nodes(node * NODE_SIZE + NODE_FACTS)).y & NODE_UNENDING) == 0u) continue;
         ++level;
         weight /= LIMIT_RATIO;
-        const vec4 ball = nodes(parent.node * NODE_SIZE + NODE_BALL);
+        const vec4 ball = nodes(node * NODE_SIZE + NODE_BALL);
         const vec3 at = parent.origin + (t - parent.base) / parent.unit * parent.direction;
         if (ball.w > 0.0f) sum += weight / ball.w * (at - xyz_of(ball));
     }
@@ -281,7 +332,7 @@ vec3 limit_normal(int last, float t, vec3 normal) {
 
 /// Shows what was met beyond the way to frame `last`: a primitive, by the part that leads to it, or the proxy of
 /// the frame's own node. `normal`: in its own frame.
-void take_hit(int last, uint part, bool is_proxy, vec3 normal, Site site, INOUT(Hit) hit) {
+void take_hit(int last, uint part, bool is_proxy, vec3 direction, vec3 normal, Site site, INOUT(Hit) hit) {
     hit.is_level = false;
     look_along(last, part, is_proxy, site, hit);
     hit.pattern_size = 0.0f;
@@ -289,11 +340,11 @@ void take_hit(int last, uint part, bool is_proxy, vec3 normal, Site site, INOUT(
         hit.pattern_size = pattern_size_of(last, part);
     vec3 n = normal;
     if (is_proxy) {
-        n = limit_normal(last, hit.t, normal);
+        n = limit_normal(last, direction, hit.t, normal);
     } else {
         n = normal_above(part, n);
         for (int i = last; i > 0; --i)
-            n = normal_above(frames[i].part, n);
+            n = normal_above(part_at(i), n);
     }
     const float length2 = dot(n, n);
     hit.normal = length2 > 0.0f ? n * inversesqrt(length2) : vec3(0.0f, 1.0f, 0.0f);
@@ -302,32 +353,32 @@ void take_hit(int last, uint part, bool is_proxy, vec3 normal, Site site, INOUT(
 /// The first surface along the ray, or with `any` whether there is one: then nothing else of the hit counts.
 bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(Hit) hit) {
     uint later_entry[MOST_LATER];
-    int later_frame[MOST_LATER];
     float later_t[MOST_LATER];
     int later = 0;
     bool found = false;
     bool hurries = false;
     uint visits = 0u;
     hit.t = most;
-    frames[0].origin = origin;
-    frames[0].base = 0.0f;
-    frames[0].direction = direction;
-    frames[0].unit = 1.0f;
-    frames[0].scale = 1.0f;
-    frames[0].steps = scene.counts.z;
-    frames[0].part = NONE;
-    frames[0].node = NONE;
-    frames[0].cut = false;
-    frames[0].faint = false;
-    frames[0].margin = scene.widths.z;
-    int at = 0; // the frame
+    Frame frame;
+    frame.origin = origin;
+    frame.base = 0.0f;
+    frame.direction = direction;
+    frame.unit = 1.0f;
+    frame.scale = 1.0f;
+    frame.margin = scene.widths.z;
+    frame.steps = scene.counts.z;
+    frame.part = NONE;
+    frame.waiting = 0;
+    frame.cut = false;
+    frame.faint = false;
+    keep(0, frame);
+    int at = 0; // its number
     uint entry = scene.counts.y;
     float entry_t = 0.0f;
     vec3 reciprocal = 1.0f / never_zero(direction);
+    float per_unit = 1.0f;
     for (;;) {
-        const Frame frame = frames[at];
         uint next = NONE;
-        int next_frame = at;
         float next_t = FAR;
         bool met = false, is_proxy = false;
         vec3 met_normal = vec3(0.0f);
@@ -339,13 +390,14 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
         uint leaf = NONE;
         if ((entry & ~ENTRY_NUMBER) == 0u) { // a node of boxes
             const uint first = entry * BOX_SIZE;
-            const float near = (least - frame.base) / frame.unit, far = (hit.t - frame.base) / frame.unit;
+            const float near = (least - frame.base) * per_unit, far = (hit.t - frame.base) * per_unit;
             for (uint i = 0u; i < 4u; ++i) {
                 const vec4 low = boxes(first + 2u * i), high = boxes(first + 2u * i + 1u);
                 const uint child = bits_of(low).w;
                 if (child == NONE) continue;
-                const vec3 a = (xyz_of(low) - frame.margin - frame.origin) * reciprocal,
-                           b = (xyz_of(high) + frame.margin - frame.origin) * reciprocal;
+                const float margin = FAINTS ? frame.margin : 0.0f;
+                const vec3 a = (xyz_of(low) - margin - frame.origin) * reciprocal,
+                           b = (xyz_of(high) + margin - frame.origin) * reciprocal;
                 const vec3 enter = min(a, b), leave = max(a, b);
                 const float t0 = max(max(enter.x, enter.y), max(enter.z, near));
                 const float t1 = min(min(leave.x, leave.y), min(leave.z, far));
@@ -363,7 +415,6 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     ++lost;
                 } else if (put != NONE) {
                     later_entry[later] = put;
-                    later_frame[later] = at;
                     later_t[later] = put_t;
                     ++later;
                 }
@@ -373,7 +424,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             vec3 normal;
             if (meet_facet(entry & ENTRY_NUMBER, frame.origin, frame.direction, (least - frame.base) / frame.unit,
                            (hit.t - frame.base) / frame.unit, t, normal, site.uv) &&
-                !(scene.tables.y != 0u && is_clear(at - 1, frame.part, site))) {
+                !(PICTURES && scene.tables.y != 0u && is_clear(at - 1, frame.part, site))) {
                 // The frame is the mesh's own: the part that leads to it is the way's last.
                 met = true;
                 met_normal = normal;
@@ -387,32 +438,34 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                        facts = parts(first + 3u);
             const uint child = bits_of(facts).y, levels = bits_of(facts).w;
             const float stretch = facts.x;
-            const float to_entry = max((entry_t - frame.base) / frame.unit, 0.0f);
+            const uint node = child * NODE_SIZE;
+            const vec4 node_facts = nodes(node + NODE_FACTS);
+            const uvec4 marks = bits_of(node_facts);
+            const uint kind = marks.y & NODE_KIND;
+            const bool is_shape = (marks.y & NODE_PRIMITIVE) != 0u && kind != KIND_MESH;
+            const float to_entry = max((entry_t - frame.base) * per_unit, 0.0f);
             const vec3 from =
                 frame.origin + to_entry * frame.direction - vec3(row0.w, row1.w, row2.w);
             Frame inner;
             inner.origin = vec3(dot(xyz_of(row0), from), dot(xyz_of(row1), from), dot(xyz_of(row2), from));
-            inner.direction = vec3(dot(xyz_of(row0), frame.direction), dot(xyz_of(row1), frame.direction),
-                                   dot(xyz_of(row2), frame.direction));
             // As long as before in a similarity, longer in others.
-            inner.direction *= stretch;
+            inner.direction = frame.direction;
+            if (!EVEN || is_shape)
+                inner.direction = stretch * vec3(dot(xyz_of(row0), frame.direction), dot(xyz_of(row1), frame.direction),
+                                                 dot(xyz_of(row2), frame.direction));
             inner.unit = frame.unit * stretch;
             inner.base = frame.base + to_entry * frame.unit;
             inner.scale = frame.scale * stretch;
             inner.part = part;
-            inner.node = child;
+            inner.waiting = later;
             inner.steps = frame.steps == NONE ? NONE : frame.steps - levels;
             inner.cut = false;
             inner.faint = frame.faint;
             inner.margin = 0.0f;
-            const uint node = child * NODE_SIZE;
-            const vec4 node_facts = nodes(node + NODE_FACTS);
-            const uvec4 marks = bits_of(node_facts);
             const float near = (least - inner.base) / inner.unit, far = (hit.t - inner.base) / inner.unit;
             float t;
             vec3 normal;
-            const uint kind = marks.y & NODE_KIND;
-            if ((marks.y & NODE_PRIMITIVE) != 0u && kind != KIND_MESH) {
+            if (is_shape) {
                 const int most_crossings = 4;
                 float begin = near;
                 site.kind = kind;
@@ -420,10 +473,10 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 const bool widened = FAINTS && frame.faint && kind != KIND_PLANE;
                 if (widened) {
                     // About its middle, in the frame that it is drawn in.
-                    const vec4 ball = nodes(frame.node * NODE_SIZE + NODE_BALL);
+                    const vec4 ball = nodes(node_of(frame.part) * NODE_SIZE + NODE_BALL);
                     const vec3 place = place_of(xyz_of(ball), frame, at, origin, direction);
                     const float width = least_half_width(place, frame.scale * ball.w);
-                    squeezed = squeezing(to_world(at, xyz_of(row0), xyz_of(row1), xyz_of(row2)),
+                    squeezed = squeezing(to_world(at, frame.scale, xyz_of(row0), xyz_of(row1), xyz_of(row2)),
                                          width / nodes(node + NODE_LOOK).w);
                     const vec3 centre = xyz_of(nodes(node + NODE_BALL));
                     inner.origin = centre + squeezed * (inner.origin - centre);
@@ -433,14 +486,14 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     met = meet_primitive(kind, nodes(node + NODE_LOOK).z, inner.origin, inner.direction, begin, far, t,
                                          normal);
                     site.point = inner.origin + t * inner.direction;
-                    if (!met || scene.tables.y == 0u || !is_clear(at, part, site)) break;
+                    if (!PICTURES || !met || scene.tables.y == 0u || !is_clear(at, part, site)) break;
                     begin = t;
                     met = false;
                 }
                 if (widened) normal = squeezed * normal;
             } else if (at + 1 < MOST_FRAMES) {
                 if (STRETCHED)
-                    inner.scale = place_space(at, xyz_of(row0), xyz_of(row1), xyz_of(row2), stretch);
+                    inner.scale = place_space(at, frame.scale, xyz_of(row0), xyz_of(row1), xyz_of(row2), stretch);
                 const vec4 ball = nodes(node + NODE_BALL);
                 const float radius = inner.scale * ball.w;
                 const vec3 place = place_of(xyz_of(ball), inner, at + 1, origin, direction);
@@ -453,7 +506,6 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 if (FAINTS && (marks.y & NODE_WIDENS) != 0u)
                     inner.margin = scene.widths.y * least_half_width(place, -2.0f * radius) / inner.scale *
                                    (STRETCHED ? most_extent(spaces[at + 1]) : 1.0f);
-                frames[at + 1] = inner;
                 if (inner.cut && tree == NONE) {
                     const vec4 proxy0 = nodes(node + NODE_PROXY), proxy1 = nodes(node + NODE_PROXY + 1u),
                                proxy2 = nodes(node + NODE_PROXY + 2u);
@@ -465,19 +517,26 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     mat3 squeezed = mat3(1.0f);
                     const bool widened = FAINTS && (inner.faint || (marks.y & NODE_FAINT) != 0u);
                     if (widened) {
-                        squeezed = squeezing(to_world(at + 1, xyz_of(proxy0), xyz_of(proxy1), xyz_of(proxy2)),
+                        squeezed = squeezing(to_world(at + 1, inner.scale, xyz_of(proxy0), xyz_of(proxy1), xyz_of(proxy2)),
                                              least_half_width(place, radius));
                         o = squeezed * o;
                         d = squeezed * d;
                     }
                     met = meet_sphere(o, d, near, far, t, normal);
                     if (widened) normal = squeezed * normal;
-                    if (met) normal = rows_transposed(proxy0, proxy1, proxy2, normal);
+                    if (met) {
+                        normal = rows_transposed(proxy0, proxy1, proxy2, normal);
+                        keep(at + 1, inner);
+                    }
                     is_proxy = true;
                 } else if (tree != NONE) {
                     next = tree;
-                    next_frame = at + 1;
                     next_t = inner.base;
+                    ++at;
+                    keep(at, inner);
+                    frame = inner;
+                    per_unit = 1.0f / frame.unit;
+                    if (!EVEN) reciprocal = 1.0f / never_zero(frame.direction);
                 }
             } else {
                 ++lost;
@@ -493,7 +552,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
         if (met) {
             found = true;
             if (any) break;
-            take_hit(last, leaf, is_proxy, met_normal, site, hit);
+            take_hit(last, leaf, is_proxy, direction, met_normal, site, hit);
         }
         if (visits > scene.visits.x) {
             // What is left is drawn as coarsely as may be, then not at all.
@@ -501,18 +560,22 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             hurries = true;
             visits -= scene.visits.y;
         }
+        const bool goes_down = next != NONE;
         while (next == NONE && later > 0) {
             --later;
             if (later_t[later] < hit.t) {
                 next = later_entry[later];
-                next_frame = later_frame[later];
                 next_t = later_t[later];
             }
         }
         if (next == NONE) break;
-        if (next_frame != at) {
-            at = next_frame;
-            reciprocal = 1.0f / never_zero(frames[at].direction);
+        if (!goes_down && later < frame.waiting) {
+            do
+                --at;
+            while (later < int(frame_marks[at].w));
+            frame = kept(at, direction);
+            per_unit = 1.0f / frame.unit;
+            if (!EVEN) reciprocal = 1.0f / never_zero(frame.direction);
         }
         entry = next;
         entry_t = next_t;

@@ -17,7 +17,11 @@
 #define INOUT(Type) Type&
 #define LIMIT_LEVELS 6
 #define LIMIT_RATIO 1.5f
-#define FRAMES inline thread_local Frame frames[MOST_FRAMES];
+#define FRAMES \
+    inline thread_local vec4 frame_places[MOST_FRAMES]; \
+    inline thread_local uvec4 frame_marks[MOST_FRAMES]; \
+    inline thread_local vec3 frame_directions[MOST_FRAMES]; \
+    inline thread_local vec2 frame_sizes[MOST_FRAMES];
 #define SPACES inline thread_local mat3 spaces[MOST_FRAMES];
 #define STEPS inline thread_local uint steps = 0, lost = 0;
 #define WAITING_PATHS inline thread_local Path waiting_paths[MOST_WAITING];
@@ -33,7 +37,9 @@ using kernel_layout::Scene;
 inline constexpr float PI = 3.14159265358979f;
 inline constexpr float FAR = 1e30f;
 inline constexpr int MOST_FRAMES = 64, MOST_LATER = 5 * MOST_FRAMES;
-inline thread_local bool STRETCHED = false, FAINTS = false, PATTERNS = false;
+inline thread_local bool STRETCHED = false, EVEN = false, FAINTS = false, PATTERNS = false, PICTURES = false,
+                         GLASS = false;
+inline thread_local std::uint32_t KINDS = 0;
 
 inline thread_local const FlatModel* model = nullptr;
 inline thread_local Scene scene;
@@ -42,9 +48,14 @@ inline thread_local std::vector<vec4> film;
 inline void use(const FlatModel& flat) {
     model = &flat;
     scene = flat.scene;
-    STRETCHED = flat.stretched;
+    const FlatModel::Features& has = flat.features;
+    STRETCHED = has.stretched;
+    EVEN = has.even;
     FAINTS = flat.scene.widths.z > 0;
-    PATTERNS = flat.patterned;
+    PATTERNS = has.patterned;
+    PICTURES = has.pictured;
+    GLASS = has.glassy;
+    KINDS = has.kinds;
 }
 
 inline uint min_uint(uint a, uint b) {
@@ -58,6 +69,9 @@ inline uvec4 bits_of(vec4 v) {
 }
 inline uint word_of(float x) {
     return floatBitsToUint(x);
+}
+inline float float_of(uint word) {
+    return uintBitsToFloat(word);
 }
 inline vec4 boxes(uint i) {
     return model->boxes[i];

@@ -115,12 +115,17 @@ class Instance {
         return info;
     }
 
-    std::optional<std::uint32_t> queue_family(VkPhysicalDevice device) const {
+    std::vector<VkQueueFamilyProperties> families(VkPhysicalDevice device) const {
         std::uint32_t count = 0;
         api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
         std::vector<VkQueueFamilyProperties> families(count);
         api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-        for (std::uint32_t i = 0; i < count; ++i)
+        return families;
+    }
+
+    std::optional<std::uint32_t> queue_family(VkPhysicalDevice device) const {
+        const std::vector<VkQueueFamilyProperties> families = this->families(device);
+        for (std::uint32_t i = 0; i < families.size(); ++i)
             if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) return i;
         return std::nullopt;
     }
@@ -165,6 +170,7 @@ struct Gpu::Parts {
         free(stage);
         if (fence) api.vkDestroyFence(device, fence, nullptr);
         if (pool) api.vkDestroyCommandPool(device, pool, nullptr);
+        if (clock) api.vkDestroyQueryPool(device, clock, nullptr);
         api.vkDestroyDevice(device, nullptr);
     }
 
@@ -222,6 +228,16 @@ struct Gpu::Parts {
         if (const VkResult result = api.vkCreateFence(device, &of_fence, nullptr, &fence);
             result != VK_SUCCESS)
             return failure("making a fence", result);
+        if (instance.families(physical)[family].timestampValidBits >= 64) {
+            VkQueryPoolCreateInfo of_clock{};
+            of_clock.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+            of_clock.queryType = VK_QUERY_TYPE_TIMESTAMP;
+            of_clock.queryCount = 2;
+            if (const VkResult result = api.vkCreateQueryPool(device, &of_clock, nullptr, &clock);
+                result != VK_SUCCESS)
+                return failure("making a clock", result);
+            tick_seconds = 1e-9 * instance.properties(physical).limits.timestampPeriod;
+        }
         return make_buffer(stage_bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                            true, stage);
     }
@@ -331,6 +347,8 @@ struct Gpu::Parts {
     VkCommandPool pool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VkFence fence = VK_NULL_HANDLE;
+    VkQueryPool clock = VK_NULL_HANDLE; ///< null where the device has none
+    double tick_seconds = 0;
     Buffer stage;
     std::byte* staged = nullptr;
     VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
@@ -472,16 +490,28 @@ Status Gpu::run(std::span<const std::byte> push, std::uint32_t groups, double& s
     Parts& parts = *parts_;
     const Api& api = parts.instance.api;
     const auto begin = std::chrono::steady_clock::now();
+    const auto stamp = [&](std::uint32_t number) {
+        if (parts.clock)
+            api.vkCmdWriteTimestamp(parts.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, parts.clock, number);
+    };
     Status status = parts.submit([&] {
         parts.wait_for_writes();
+        if (parts.clock) api.vkCmdResetQueryPool(parts.commands, parts.clock, 0, 2);
+        stamp(0);
         api.vkCmdBindPipeline(parts.commands, VK_PIPELINE_BIND_POINT_COMPUTE, parts.pipeline);
         api.vkCmdBindDescriptorSets(parts.commands, VK_PIPELINE_BIND_POINT_COMPUTE, parts.layout, 0, 1,
                                     &parts.set, 0, nullptr);
         api.vkCmdPushConstants(parts.commands, parts.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                                static_cast<std::uint32_t>(push.size()), push.data());
         api.vkCmdDispatch(parts.commands, groups, 1, 1);
+        stamp(1);
     });
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    std::array<std::uint64_t, 2> ticks{};
+    if (status.ok() && parts.clock &&
+        api.vkGetQueryPoolResults(parts.device, parts.clock, 0, 2, sizeof ticks, ticks.data(), sizeof ticks[0],
+                                  VK_QUERY_RESULT_64_BIT) == VK_SUCCESS)
+        seconds = static_cast<double>(ticks[1] - ticks[0]) * parts.tick_seconds;
     return status;
 }
 

@@ -45,7 +45,8 @@ class Gpu {
     /// Reads a buffer back.
     Status read(std::size_t binding, std::span<std::byte> bytes);
 
-    /// Runs the kernel in that many groups, and waits for it. `seconds`: that it took.
+    /// Runs the kernel in that many groups, and waits for it. `seconds`: that it took, by the device's clock where
+    /// it has one.
     Status run(std::span<const std::byte> push, std::uint32_t groups, double& seconds);
 
     const GpuInfo& info() const { return info_; }

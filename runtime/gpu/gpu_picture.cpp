@@ -25,6 +25,8 @@ constexpr std::size_t film_binding = 8;
 /// Pixels along each side of a group's tile.
 constexpr int group_side = 8;
 constexpr double seconds_a_piece = 0.03;
+/// Steps of a pixel that tell that a part had no room.
+constexpr float lost_steps = 1e29f;
 /// Software devices end loops after some ten thousand rounds in all, so that each sample has to be a piece of
 /// its own (Mesa's llvmpipe).
 constexpr std::uint32_t most_samples_by_software = 1;
@@ -92,13 +94,13 @@ Status GpuPicture::read_sums(std::vector<glm::vec4>& sums) {
     return gpu_.read(film_binding, std::as_writable_bytes(std::span(sums)));
 }
 
-Status GpuPicture::read_aovs(const FlatModel& model, AovPicture& aovs, double& lost) {
+Status GpuPicture::read_aovs(const FlatModel& model, AovPicture& aovs, bool& lost) {
     std::vector<glm::vec4> sums;
     if (Status status = read_sums(sums); !status.ok()) return status;
     const float whole = samples_.lattice > 0 ? static_cast<float>(samples_.lattice * samples_.lattice)
                                              : static_cast<float>(done_);
     aovs = AovPicture(window_.pixels());
-    lost = 0;
+    lost = false;
     for (std::size_t i = 0; i < aovs.pixels.size(); ++i) {
         const glm::vec4 sum = sums[4 * i], normals = sums[4 * i + 1], albedos = sums[4 * i + 2],
                         nearest = sums[4 * i + 3];
@@ -107,7 +109,7 @@ Status GpuPicture::read_aovs(const FlatModel& model, AovPicture& aovs, double& l
             static_cast<std::uint32_t>(nearest.x) << 16 | static_cast<std::uint32_t>(nearest.y);
         pixel.node = node < model.source.size() ? model.source[node] : node;
         pixel.levels = static_cast<std::uint32_t>(nearest.z);
-        lost += nearest.w;
+        lost = lost || nearest.w > 0;
         if (!(sum.x > 0)) continue;
         pixel.coverage = sum.x / whole;
         pixel.depth = sum.y / sum.x;
@@ -130,8 +132,9 @@ Status GpuPicture::read(const Film& film, double noise_255, Image& picture, Seen
         for (int c = 0; c < 3; ++c)
             picture.pixels[3 * i + static_cast<std::size_t>(c)] = sum.w > 0 ? sum[c] / sum.w : 0;
         seen.samples += static_cast<double>(sum.w);
+        seen.rays += 1e3 * static_cast<double>(spread.w);
+        seen.lost = seen.lost || spread.z >= lost_steps;
         seen.steps += 1e3 * static_cast<double>(spread.z);
-        seen.lost += static_cast<double>(spread.w);
         if (samples_.lattice > 0 || !(sum.w > 1)) continue;
         const double mean = spread.x, count = sum.w;
         const double error = std::sqrt(std::max<double>(spread.y, 0) / (count - 1) / count);

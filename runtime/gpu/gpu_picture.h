@@ -41,8 +41,9 @@ class GpuPicture {
     /// Counts of all samples so far.
     struct Seen {
         double samples = 0;      ///< of all pixels together
+        double rays = 0;
         double steps = 0;        ///< boxes and parts that rays went to
-        double lost = 0;         ///< parts that rays had no room for: then the picture is wrong
+        bool lost = false;       ///< rays had no room for some part: then the picture is wrong
         double noise_255 = 0;    ///< the mean error of a pixel as the film shows it; 0 where it is not known
         std::uint64_t noisy = 0; ///< pixels with more noise than is asked for
     };
@@ -50,9 +51,9 @@ class GpuPicture {
     /// of the window.
     Status read(const Film& film, double noise_255, Image& picture, Seen& seen);
 
-    /// Gives the values of each pixel of the window, and parts that rays had no room for. Requires
-    /// Samples::aovs; `model` is the one prepared.
-    Status read_aovs(const FlatModel& model, AovPicture& aovs, double& lost);
+    /// Gives the values of each pixel of the window; `lost` as above. Requires Samples::aovs; `model` is the one
+    /// prepared.
+    Status read_aovs(const FlatModel& model, AovPicture& aovs, bool& lost);
 
     double seconds() const { return seconds_; } ///< that the device has worked
 

@@ -50,5 +50,10 @@
     FUNCTION(vkDestroyFence)                                                                                 \
     FUNCTION(vkResetFences)                                                                                  \
     FUNCTION(vkWaitForFences)                                                                                \
+    FUNCTION(vkCreateQueryPool)                                                                              \
+    FUNCTION(vkDestroyQueryPool)                                                                             \
+    FUNCTION(vkCmdResetQueryPool)                                                                            \
+    FUNCTION(vkCmdWriteTimestamp)                                                                            \
+    FUNCTION(vkGetQueryPoolResults)                                                                          \
     FUNCTION(vkQueueSubmit)                                                                                  \
     FUNCTION(vkDeviceWaitIdle)

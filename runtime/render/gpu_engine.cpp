@@ -77,14 +77,14 @@ class GpuDrawing {
             return !cancel_.raised();
         };
         if (options_.needs_aovs()) {
-            double lost = 0;
+            bool lost = false;
             GpuPicture aovs(gpu, view_.size, window_, {lattice, options_.sequence, true});
             Status status = aovs.prepare(model, frames);
             if (status.ok())
                 status = aovs.sample(lattice > 0 ? most : std::min(most, most_aov_samples), goes_on);
             if (status.ok()) status = aovs.read_aovs(model, aovs_, lost);
             if (!status.ok()) return status;
-            fits = lost == 0;
+            fits = !lost;
             if (!fits) return no_room();
         }
         if (Status status = drawing.prepare(model, frames); !status.ok()) return status;
@@ -97,7 +97,7 @@ class GpuDrawing {
             GpuPicture::Seen seen;
             if (Status read = drawing.read(view_.film, plan_.wanted.noise_255, picture_, seen); !read.ok())
                 return read;
-            fits = seen.lost == 0;
+            fits = !seen.lost;
             if (!fits) return no_room();
             done = count;
             const double left = most_steps - seen.steps;

@@ -68,15 +68,15 @@ Agreement compare(const std::string& name, Session& session, const StageOptions&
     if (!flat || !gpu) return seen;
     const Tile window{0, 0, model.view.size.width, model.view.size.height};
     AovPicture by_gpu, by_native(window.pixels());
-    double lost = 1;
+    bool lost = true;
     for (const std::uint32_t frames : {GpuPicture::usual_frames, GpuPicture::most_frames}) {
-        if (lost == 0) break;
+        if (!lost) break;
         GpuPicture picture(*gpu, model.view.size, window, {.aovs = true});
         EXPECT_TRUE(picture.prepare(*flat, frames).ok());
         EXPECT_TRUE(picture.sample(1, [](double) { return true; }).ok());
         EXPECT_TRUE(picture.read_aovs(*flat, by_gpu, lost).ok());
     }
-    EXPECT_EQ(lost, 0) << name;
+    EXPECT_FALSE(lost) << name;
     Image light;
     light.width = window.width;
     light.height = window.height;

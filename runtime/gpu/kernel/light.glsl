@@ -160,6 +160,7 @@ void meet_level_at(float t, float height, uint material, INOUT(Hit) hit) {
 
 /// walk(), and the ground.
 bool meet_first(vec3 o, vec3 d, float least, float most, bool any, INOUT(Hit) hit) {
+    ++rays;
     const bool found = walk(o, d, least, most, any, hit);
     float t;
     const bool ground = scene.ground.y > 0.0f && meet_level(scene.ground.x, o, d, least, found ? hit.t : most, t);

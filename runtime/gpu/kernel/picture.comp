@@ -22,7 +22,7 @@
     vec3 frame_directions[EVEN ? 2 : MOST_FRAMES]; \
     vec2 frame_sizes[STRETCHED || FAINTS ? MOST_FRAMES : 2];
 #define SPACES mat3 spaces[STRETCHED ? MOST_FRAMES : 2];
-#define STEPS uint steps = 0u, lost = 0u;
+#define STEPS uint rays = 0u, steps = 0u, lost = 0u;
 #define WAITING_PATHS Path waiting_paths[MOST_WAITING];
 
 #include "runtime/gpu/kernel/layout.glsl"

@@ -75,11 +75,13 @@ Stream stream_of_pixel(uvec2 pixel, uvec2 sequence, uint i) {
 }
 
 /// Adds samples `first` to `first + count` to a pixel. `film`: the weighted sum of its light and the weights;
-/// then the mean and the sum of squares of the luminance, the steps of rays in thousands, and parts that
-/// had no room.
+/// then the mean and the sum of squares of the luminance, and the steps and the number of rays in
+/// thousands. Steps without end: some part had no room.
 void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint count, uint lattice) {
     vec4 sum = film[SUMS_A_PIXEL * at], noise = film[SUMS_A_PIXEL * at + 1u];
+    rays = 0u;
     steps = 0u;
+    lost = 0u;
     for (uint i = first; i < first + count; ++i) {
         if (lattice == 0u && sum.w > 0.0f && uint(sum.w) % 16u == 0u &&
             error_255(sum.w, noise.x, noise.y) < scene.limits.z)
@@ -96,8 +98,8 @@ void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, ui
         noise.x += before / sum.w;
         noise.y += before * (luminance - noise.x);
     }
-    noise.z += 1e-3f * float(steps);
-    noise.w += float(lost);
+    noise.z += lost > 0u ? FAR : 1e-3f * float(steps);
+    noise.w += 1e-3f * float(rays);
     film[SUMS_A_PIXEL * at] = sum;
     film[SUMS_A_PIXEL * at + 1u] = noise;
 }

@@ -116,7 +116,7 @@ vec3 normal_above(uint part, vec3 normal) {
     return length2 > 0.0f ? n * inversesqrt(length2) : normal;
 }
 
-/// Boxes and parts that all rays of the thread went to, and parts that they had no room for.
+/// Rays of the thread, boxes and parts that they went to, and parts that they had no room for.
 STEPS
 
 /// The linear parts of the maps from the frames to the world, less the scale, where STRETCHED: the norm of a

@@ -23,7 +23,7 @@
     inline thread_local vec3 frame_directions[MOST_FRAMES]; \
     inline thread_local vec2 frame_sizes[MOST_FRAMES];
 #define SPACES inline thread_local mat3 spaces[MOST_FRAMES];
-#define STEPS inline thread_local uint steps = 0, lost = 0;
+#define STEPS inline thread_local uint rays = 0, steps = 0, lost = 0;
 #define WAITING_PATHS inline thread_local Path waiting_paths[MOST_WAITING];
 
 namespace graftal::kernel {

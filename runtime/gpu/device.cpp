@@ -335,6 +335,10 @@ struct Gpu::Parts {
         });
     }
 
+    VkDescriptorType kind_of(std::size_t binding) const {
+        return binding == uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    }
+
     static constexpr VkDeviceSize stage_bytes = 16 << 20;
     std::uint64_t longest_wait_ns = 60'000'000'000;
 
@@ -357,6 +361,7 @@ struct Gpu::Parts {
     VkDescriptorPool sets = VK_NULL_HANDLE;
     VkDescriptorSet set = VK_NULL_HANDLE;
     std::vector<Buffer> buffers;
+    std::size_t uniform = no_binding;
 };
 
 Gpu::Gpu(std::unique_ptr<Parts> parts, GpuInfo info) : parts_(std::move(parts)), info_(std::move(info)) {}
@@ -382,13 +387,14 @@ std::unique_ptr<Gpu> Gpu::open(std::size_t number, Status& status) {
 }
 
 Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std::uint32_t push_bytes,
-                 std::span<const std::uint32_t> constants) {
+                 std::span<const std::uint32_t> constants, std::size_t uniform) {
     parts_->unload();
+    parts_->uniform = uniform;
     const Api& api = parts_->instance.api;
     const VkDevice device = parts_->device;
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (std::size_t i = 0; i < buffers; ++i)
-        bindings.push_back({static_cast<std::uint32_t>(i), VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+        bindings.push_back({static_cast<std::uint32_t>(i), parts_->kind_of(i), 1,
                             VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
     VkDescriptorSetLayoutCreateInfo of_set{};
     of_set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
@@ -427,12 +433,14 @@ Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std:
         result =
             api.vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &of_pipeline, nullptr, &parts_->pipeline);
     if (module) api.vkDestroyShaderModule(device, module, nullptr);
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, static_cast<std::uint32_t>(buffers)};
+    const std::array<VkDescriptorPoolSize, 2> sizes = {
+        {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, static_cast<std::uint32_t>(buffers)},
+         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1}}};
     VkDescriptorPoolCreateInfo of_pool{};
     of_pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
     of_pool.maxSets = 1;
-    of_pool.poolSizeCount = 1;
-    of_pool.pPoolSizes = &size;
+    of_pool.poolSizeCount = sizes.size();
+    of_pool.pPoolSizes = sizes.data();
     if (result == VK_SUCCESS) result = api.vkCreateDescriptorPool(device, &of_pool, nullptr, &parts_->sets);
     VkDescriptorSetAllocateInfo allocate{};
     allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
@@ -451,7 +459,7 @@ Status Gpu::add_buffer(std::span<const std::byte> bytes, std::size_t size) {
     if (whole > parts.most_buffer_bytes)
         return Status::failure(fmt::format("GPU: the device takes no buffer of {} bytes", whole));
     Buffer& buffer = parts.buffers.emplace_back();
-    constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+    constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     if (Status status = parts.make_buffer(whole, usage, false, buffer); !status.ok()) return status;
     if (bytes.size() < whole)
@@ -470,7 +478,7 @@ Status Gpu::add_buffer(std::span<const std::byte> bytes, std::size_t size) {
     write.dstSet = parts.set;
     write.dstBinding = static_cast<std::uint32_t>(parts.buffers.size() - 1);
     write.descriptorCount = 1;
-    write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    write.descriptorType = parts.kind_of(parts.buffers.size() - 1);
     write.pBufferInfo = &info;
     api.vkUpdateDescriptorSets(parts.device, 1, &write, 0, nullptr);
     return {};

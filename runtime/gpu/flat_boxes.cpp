@@ -146,6 +146,7 @@ std::uint32_t build_flat_boxes(std::vector<FlatItem>& items, std::vector<glm::ve
     const auto bounded =
         std::ranges::partition(items, [](const FlatItem& item) { return item.box.max.x < flat_endless; });
     const std::span<FlatItem> endless(bounded), others(items.begin(), bounded.begin());
+    if (items.size() == 1) return items[0].entry;
     Builder builder(boxes);
     return builder.put_before(endless, others.empty() ? NONE : builder.build(others, 0));
 }

@@ -104,10 +104,11 @@ class Flattener {
         const std::uint32_t primitive = graph_.nodes[edge.child].primitive;
         FlatModel::Features& features = flat_.features;
         features.stretched = features.stretched || (primitive == flat_none && !is_similarity(edge));
-        if (primitive == flat_none || meshes_[primitive] != NONE)
-            features.even = features.even && keeps_directions(edge);
-        else
-            features.kinds |= 1u << static_cast<unsigned>(graph_.primitives[primitive].kind());
+        const bool is_mesh = primitive != flat_none && meshes_[primitive] != NONE;
+        if (primitive == flat_none || is_mesh) features.even = features.even && keeps_directions(edge);
+        if (primitive != flat_none)
+            features.kinds |= 1u << (is_mesh ? KIND_MESH
+                                             : static_cast<unsigned>(graph_.primitives[primitive].kind()));
         flat_.looks.push_back(of_paint(edge.tint));
         flat_.looks.emplace_back(edge.turns, 0, 0, 0);
     }

@@ -21,6 +21,7 @@
     uvec4 frame_marks[MOST_FRAMES]; \
     vec3 frame_directions[EVEN ? 2 : MOST_FRAMES]; \
     vec2 frame_sizes[STRETCHED || FAINTS ? MOST_FRAMES : 2];
+#define MET_MARKS uint met_marks[MOST_FRAMES];
 #define SPACES mat3 spaces[STRETCHED ? MOST_FRAMES : 2];
 #define STEPS uint rays = 0u, steps = 0u, lost = 0u;
 #define WAITING_PATHS Path waiting_paths[MOST_WAITING];
@@ -38,6 +39,7 @@ layout(constant_id = 5) const bool PATTERNS = false;  // some material has one
 layout(constant_id = 6) const bool PICTURES = false;  // likewise
 layout(constant_id = 7) const bool GLASS = false;     // some material lets light through
 layout(constant_id = 8) const uint KINDS = 0x1ffu;    // of primitives: a bit each
+const bool MESHES = (KINDS & (1u << KIND_MESH)) != 0u;
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly restrict buffer Boxes { vec4 all_boxes[]; };
@@ -47,7 +49,7 @@ layout(std430, binding = 3) readonly restrict buffer Looks { vec4 all_looks[]; }
 layout(std430, binding = 4) readonly restrict buffer Materials { vec4 all_materials[]; };
 layout(std430, binding = 5) readonly restrict buffer Triangles { vec4 all_triangles[]; };
 layout(std430, binding = 6) readonly restrict buffer Texels { float all_texels[]; };
-layout(std430, binding = 7) readonly restrict buffer SceneBuffer { Scene scene; };
+layout(std140, binding = 7) uniform SceneBuffer { Scene scene; };
 layout(std430, binding = 8) restrict buffer Film { vec4 film[]; };
 
 #define boxes(i) all_boxes[i]

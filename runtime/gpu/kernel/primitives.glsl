@@ -162,8 +162,8 @@ bool meet_torus(vec3 o, vec3 d, float least, float most, OUT(float) t, OUT(vec3)
 
 bool meet_primitive(uint kind, float shape, vec3 o, vec3 d, float least, float most, OUT(float) t,
                     OUT(vec3) normal) {
-    // What the model lacks is not compiled.
-    if (HAS_KIND(KIND_SPHERE) && kind == KIND_SPHERE) return meet_sphere(o, d, least, most, t, normal);
+    // What the model lacks is not compiled. Spheres stand for what is cut.
+    if (kind == KIND_SPHERE) return meet_sphere(o, d, least, most, t, normal);
     if (HAS_KIND(KIND_CUBE) && kind == KIND_CUBE) return meet_cube(o, d, least, most, t, normal);
     if (HAS_KIND(KIND_TRIANGLE) && kind == KIND_TRIANGLE) return meet_triangle(o, d, least, most, t, normal);
     if (HAS_KIND(KIND_PLANE) && kind == KIND_PLANE) return meet_plane(o, d, least, most, t, normal);

@@ -257,19 +257,42 @@ bool is_clear(int last, uint part, Site site) {
     return texel_of(material, site, looks(part * LOOK_SIZE + 1u).x).w > 0.0f;
 }
 
-/// The look at the end of the way through frames 1 to `last`, and `part` beyond them if it is a primitive.
-void look_along(int last, uint part, bool is_proxy, Site site, INOUT(Hit) hit) {
+/// The nearest thing that a ray has met so far. Only at the end of the walk is it worth looking at: most rays meet some
+/// that lie behind.
+struct Meeting {
+    int last;      // frames on the way to it; their marks are in met_marks
+    uint part;     // a primitive's: the one beyond that way
+    bool is_proxy; // it is the proxy of the last frame's node
+    vec3 normal;   // in its own frame
+    Site site;     // likewise
+    float scale;   // of the last frame
+};
+
+MET_MARKS
+
+/// Keeps the way to a meeting beyond frame `last`.
+void keep_way(int last) {
+    for (int i = 1; i <= last; ++i)
+        met_marks[i] = frame_marks[i].z;
+}
+
+uint met_part(int at) {
+    return met_marks[at] & FRAME_PART;
+}
+
+/// The look at the end of the way to a meeting.
+void look_along(Meeting meeting, INOUT(Hit) hit) {
     vec4 tint = vec4(0.0f, 0.0f, 0.0f, 1.0f);
     vec3 inherited = xyz_of(materials(0u));
     hit.material = 0u;
-    hit.node = last > 0 ? node_of(part_at(last)) : NONE;
+    hit.node = meeting.last > 0 ? node_of(met_part(meeting.last)) : NONE;
     hit.levels = 0u;
     uint above = NONE;
-    const int end = is_proxy ? last : last + 1;
+    const int end = meeting.is_proxy ? meeting.last : meeting.last + 1;
     for (int i = 1; i <= end; ++i) {
-        const uint step = i <= last ? part_at(i) : part;
+        const uint step = i <= meeting.last ? met_part(i) : meeting.part;
         const uvec4 facts = bits_of(parts(step * PART_SIZE + 3u));
-        if ((frame_marks[i - 1].z & FRAME_CUT) != 0u &&
+        if (i > 1 && (met_marks[i - 1] & FRAME_CUT) != 0u &&
             (bits_of(nodes(above * NODE_SIZE + NODE_FACTS)).y & NODE_TERMINAL) != 0u) {
             const vec4 mean = nodes(above * NODE_SIZE + NODE_MEAN);
             inherited = xyz_of(mean) + mean.w * inherited;
@@ -283,68 +306,71 @@ void look_along(int last, uint part, bool is_proxy, Site site, INOUT(Hit) hit) {
         }
         above = facts.y;
     }
-    if (is_proxy) {
+    if (meeting.is_proxy) {
         const uint node = hit.node;
         const vec4 mean = nodes(node * NODE_SIZE + NODE_STANDIN);
         inherited = xyz_of(mean) + mean.w * inherited;
         const uint finish = bits_of(nodes(node * NODE_SIZE + NODE_LOOK)).x;
         if (finish != NONE) hit.material = finish;
     } else if (has_picture(hit.material)) {
-        inherited = xyz_of(texel_of(hit.material, site, looks(part * LOOK_SIZE + 1u).x));
+        inherited = xyz_of(texel_of(hit.material, meeting.site, looks(meeting.part * LOOK_SIZE + 1u).x));
     }
     hit.rgb = xyz_of(tint) + tint.w * inherited;
     hit.tint = tint;
 }
 
-/// pattern_size() of a primitive beyond the way to frame `at`, as long as part_size() says.
-float pattern_size_of(int at, uint part) {
-    const uint first = part * PART_SIZE;
+/// pattern_size() of a primitive that was met last, whose frames are still kept, as long as part_size() says.
+float pattern_size_of(Meeting meeting) {
+    const uint first = meeting.part * PART_SIZE;
     const vec4 extent = nodes(bits_of(parts(first + 3u)).y * NODE_SIZE + NODE_STANDIN);
     if (extent.w == 0.0f) return 1.0f;
-    const mat3 map = to_world(at, kept(at, vec3(0.0f)).scale, xyz_of(parts(first)), xyz_of(parts(first + 1u)), xyz_of(parts(first + 2u)));
+    const mat3 map = to_world(meeting.last, meeting.scale, xyz_of(parts(first)), xyz_of(parts(first + 1u)), xyz_of(parts(first + 2u)));
     const float a = extent.x * length(map[0]), b = extent.y * length(map[1]), c = extent.z * length(map[2]);
     const float middle = max(min(a, b), min(max(a, b), c));
     return middle > 0.0f && middle < FAR ? exp2(0.5f * floor(2.0f * log2(middle) + 0.5f)) : 1.0f;
 }
 
-/// The limit's normal where the proxy of a frame's node is met (limit_normal() of runtime/trace).
-vec3 limit_normal(int last, vec3 direction, float t, vec3 normal) {
+/// A point of a part in the frame that holds it.
+vec3 point_above(uint part, vec3 point) {
+    const uint first = part * PART_SIZE;
+    const vec4 row0 = parts(first), row1 = parts(first + 1u), row2 = parts(first + 2u);
+    return inverse_of(xyz_of(row0), xyz_of(row1), xyz_of(row2)) * point + vec3(row0.w, row1.w, row2.w);
+}
+
+/// The limit's normal where the proxy of a node is met (limit_normal() of runtime/trace).
+vec3 limit_normal(Meeting meeting) {
     const int most_levels = LIMIT_LEVELS;
-    vec3 sum = normal;
+    vec3 sum = meeting.normal, point = meeting.site.point;
     int level = 0;
     float weight = 1.0f;
-    for (int i = last; i > 0; --i) {
+    for (int i = meeting.last; i > 0; --i) {
         const float size = length(sum);
-        if (!(size > 0.0f)) return normal;
-        sum = size * normal_above(part_at(i), sum / size);
+        if (!(size > 0.0f)) return meeting.normal;
+        const uint part = met_part(i);
+        sum = size * normal_above(part, sum / size);
         if (i == 1 || level == most_levels) continue;
-        const Frame parent = kept(i - 1, direction);
-        const uint node = node_of(parent.part);
+        point = point_above(part, point);
+        const uint node = node_of(met_part(i - 1));
         if ((bits_of(nodes(node * NODE_SIZE + NODE_FACTS)).y & NODE_UNENDING) == 0u) continue;
         ++level;
         weight /= LIMIT_RATIO;
         const vec4 ball = nodes(node * NODE_SIZE + NODE_BALL);
-        const vec3 at = parent.origin + (t - parent.base) / parent.unit * parent.direction;
-        if (ball.w > 0.0f) sum += weight / ball.w * (at - xyz_of(ball));
+        if (ball.w > 0.0f) sum += weight / ball.w * (point - xyz_of(ball));
     }
     return sum;
 }
 
-/// Shows what was met beyond the way to frame `last`: a primitive, by the part that leads to it, or the proxy of
-/// the frame's own node. `normal`: in its own frame.
-void take_hit(int last, uint part, bool is_proxy, vec3 direction, vec3 normal, Site site, INOUT(Hit) hit) {
+/// Shows what the ray has met.
+void take_hit(Meeting meeting, INOUT(Hit) hit) {
     hit.is_level = false;
-    look_along(last, part, is_proxy, site, hit);
-    hit.pattern_size = 0.0f;
-    if (!is_proxy && bits_of(materials(hit.material * MATERIAL_SIZE + 3u)).w != NONE)
-        hit.pattern_size = pattern_size_of(last, part);
-    vec3 n = normal;
-    if (is_proxy) {
-        n = limit_normal(last, direction, hit.t, normal);
+    look_along(meeting, hit);
+    vec3 n = meeting.normal;
+    if (meeting.is_proxy) {
+        n = limit_normal(meeting);
     } else {
-        n = normal_above(part, n);
-        for (int i = last; i > 0; --i)
-            n = normal_above(part_at(i), n);
+        n = normal_above(meeting.part, n);
+        for (int i = meeting.last; i > 0; --i)
+            n = normal_above(met_part(i), n);
     }
     const float length2 = dot(n, n);
     hit.normal = length2 > 0.0f ? n * inversesqrt(length2) : vec3(0.0f, 1.0f, 0.0f);
@@ -359,6 +385,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
     bool hurries = false;
     uint visits = 0u;
     hit.t = most;
+    hit.pattern_size = 0.0f;
+    Meeting meeting;
     Frame frame;
     frame.origin = origin;
     frame.base = 0.0f;
@@ -375,41 +403,35 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
     int at = 0; // its number
     uint entry = scene.counts.y;
     float entry_t = 0.0f;
-    vec3 reciprocal = 1.0f / never_zero(direction);
+    vec3 reciprocal = 1.0f / never_zero(direction), shift = -frame.origin * reciprocal;
     float per_unit = 1.0f;
     for (;;) {
-        uint next = NONE;
-        float next_t = FAR;
-        bool met = false, is_proxy = false;
-        vec3 met_normal = vec3(0.0f);
-        Site site;
-        site.kind = KIND_MESH;
-        site.point = vec3(0.0f);
-        site.uv = vec2(0.0f);
-        int last = 0; // frame, and the part beyond it, of what was met
-        uint leaf = NONE;
-        if ((entry & ~ENTRY_NUMBER) == 0u) { // a node of boxes
+        bool is_new = false; // the frame
+        // Down through boxes, into the nearest first; the others wait.
+        while ((entry & ~ENTRY_NUMBER) == 0u) {
             const uint first = entry * BOX_SIZE;
             const float near = (least - frame.base) * per_unit, far = (hit.t - frame.base) * per_unit;
+            const float margin = FAINTS ? frame.margin : 0.0f;
+            entry = NONE;
+            entry_t = FAR;
+            ++visits;
             for (uint i = 0u; i < 4u; ++i) {
                 const vec4 low = boxes(first + 2u * i), high = boxes(first + 2u * i + 1u);
                 const uint child = bits_of(low).w;
-                if (child == NONE) continue;
-                const float margin = FAINTS ? frame.margin : 0.0f;
-                const vec3 a = (xyz_of(low) - margin - frame.origin) * reciprocal,
-                           b = (xyz_of(high) + margin - frame.origin) * reciprocal;
+                const vec3 a = (xyz_of(low) - margin) * reciprocal + shift,
+                           b = (xyz_of(high) + margin) * reciprocal + shift;
                 const vec3 enter = min(a, b), leave = max(a, b);
                 const float t0 = max(max(enter.x, enter.y), max(enter.z, near));
                 const float t1 = min(min(leave.x, leave.y), min(leave.z, far));
-                if (!(t0 <= t1 * (1.0f + 4e-7f) + 1e-7f)) continue;
+                if (child == NONE || !(t0 <= t1 * (1.0f + 4e-7f) + 1e-7f)) continue;
                 const float t = frame.base + t0 * frame.unit;
                 uint put = child;
                 float put_t = t;
-                if (t < next_t) {
-                    put = next;
-                    put_t = next_t;
-                    next = child;
-                    next_t = t;
+                if (t < entry_t) {
+                    put = entry;
+                    put_t = entry_t;
+                    entry = child;
+                    entry_t = t;
                 }
                 if (put != NONE && later == MOST_LATER) {
                     ++lost;
@@ -419,33 +441,44 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     ++later;
                 }
             }
-        } else if ((entry & ~ENTRY_NUMBER) == ENTRY_TRIANGLE) {
-            float t;
-            vec3 normal;
-            if (meet_facet(entry & ENTRY_NUMBER, frame.origin, frame.direction, (least - frame.base) / frame.unit,
-                           (hit.t - frame.base) / frame.unit, t, normal, site.uv) &&
-                !(PICTURES && scene.tables.y != 0u && is_clear(at - 1, frame.part, site))) {
+        }
+        const uint number = entry & ENTRY_NUMBER;
+        bool met = false;
+        float t;
+        vec3 normal;
+        if (MESHES && (entry & ~ENTRY_NUMBER) == ENTRY_TRIANGLE) {
+            ++visits;
+            Site site;
+            site.kind = KIND_MESH;
+            site.point = vec3(0.0f);
+            met = meet_facet(number, frame.origin, frame.direction, (least - frame.base) * per_unit,
+                             (hit.t - frame.base) * per_unit, t, normal, site.uv) &&
+                  !(PICTURES && scene.tables.y != 0u && is_clear(at - 1, frame.part, site));
+            if (met) {
                 // The frame is the mesh's own: the part that leads to it is the way's last.
-                met = true;
-                met_normal = normal;
                 hit.t = frame.base + t * frame.unit;
-                last = at - 1;
-                leaf = frame.part;
+                meeting.last = at - 1;
+                meeting.part = frame.part;
+                meeting.is_proxy = false;
+                meeting.normal = normal;
+                meeting.site = site;
+                meeting.scale = kept(at - 1, direction).scale;
             }
-        } else {
-            const uint part = entry & ENTRY_NUMBER, first = part * PART_SIZE;
+            entry = NONE;
+        } else if (entry != NONE) {
+            ++visits;
+            entry = NONE;
+            const uint first = number * PART_SIZE;
             const vec4 row0 = parts(first), row1 = parts(first + 1u), row2 = parts(first + 2u),
                        facts = parts(first + 3u);
-            const uint child = bits_of(facts).y, levels = bits_of(facts).w;
+            const uint child = bits_of(facts).y, levels = bits_of(facts).w, node = child * NODE_SIZE;
             const float stretch = facts.x;
-            const uint node = child * NODE_SIZE;
             const vec4 node_facts = nodes(node + NODE_FACTS);
             const uvec4 marks = bits_of(node_facts);
             const uint kind = marks.y & NODE_KIND;
             const bool is_shape = (marks.y & NODE_PRIMITIVE) != 0u && kind != KIND_MESH;
             const float to_entry = max((entry_t - frame.base) * per_unit, 0.0f);
-            const vec3 from =
-                frame.origin + to_entry * frame.direction - vec3(row0.w, row1.w, row2.w);
+            const vec3 from = frame.origin + to_entry * frame.direction - vec3(row0.w, row1.w, row2.w);
             Frame inner;
             inner.origin = vec3(dot(xyz_of(row0), from), dot(xyz_of(row1), from), dot(xyz_of(row2), from));
             // As long as before in a similarity, longer in others.
@@ -456,21 +489,20 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             inner.unit = frame.unit * stretch;
             inner.base = frame.base + to_entry * frame.unit;
             inner.scale = frame.scale * stretch;
-            inner.part = part;
+            inner.part = number;
             inner.waiting = later;
             inner.steps = frame.steps == NONE ? NONE : frame.steps - levels;
             inner.cut = false;
             inner.faint = frame.faint;
             inner.margin = 0.0f;
-            const float near = (least - inner.base) / inner.unit, far = (hit.t - inner.base) / inner.unit;
-            float t;
-            vec3 normal;
+            const float inner_per_unit = 1.0f / inner.unit;
+            // The surface to meet, if there is one: a primitive, or the ball that stands for what is cut.
+            bool meets = is_shape, is_proxy = false, widened = false;
+            vec3 o = inner.origin, d = inner.direction;
+            uint surface = kind;
+            mat3 squeezed = mat3(1.0f);
             if (is_shape) {
-                const int most_crossings = 4;
-                float begin = near;
-                site.kind = kind;
-                mat3 squeezed = mat3(1.0f);
-                const bool widened = FAINTS && frame.faint && kind != KIND_PLANE;
+                widened = FAINTS && frame.faint && kind != KIND_PLANE;
                 if (widened) {
                     // About its middle, in the frame that it is drawn in.
                     const vec4 ball = nodes(node_of(frame.part) * NODE_SIZE + NODE_BALL);
@@ -479,21 +511,13 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     squeezed = squeezing(to_world(at, frame.scale, xyz_of(row0), xyz_of(row1), xyz_of(row2)),
                                          width / nodes(node + NODE_LOOK).w);
                     const vec3 centre = xyz_of(nodes(node + NODE_BALL));
-                    inner.origin = centre + squeezed * (inner.origin - centre);
-                    inner.direction = squeezed * inner.direction;
+                    o = centre + squeezed * (o - centre);
+                    d = squeezed * d;
                 }
-                for (int crossing = 0; crossing < most_crossings; ++crossing) {
-                    met = meet_primitive(kind, nodes(node + NODE_LOOK).z, inner.origin, inner.direction, begin, far, t,
-                                         normal);
-                    site.point = inner.origin + t * inner.direction;
-                    if (!PICTURES || !met || scene.tables.y == 0u || !is_clear(at, part, site)) break;
-                    begin = t;
-                    met = false;
-                }
-                if (widened) normal = squeezed * normal;
             } else if (at + 1 < MOST_FRAMES) {
                 if (STRETCHED)
-                    inner.scale = place_space(at, frame.scale, xyz_of(row0), xyz_of(row1), xyz_of(row2), stretch);
+                    inner.scale =
+                        place_space(at, frame.scale, xyz_of(row0), xyz_of(row1), xyz_of(row2), stretch);
                 const vec4 ball = nodes(node + NODE_BALL);
                 const float radius = inner.scale * ball.w;
                 const vec3 place = place_of(xyz_of(ball), inner, at + 1, origin, direction);
@@ -506,53 +530,70 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 if (FAINTS && (marks.y & NODE_WIDENS) != 0u)
                     inner.margin = scene.widths.y * least_half_width(place, -2.0f * radius) / inner.scale *
                                    (STRETCHED ? most_extent(spaces[at + 1]) : 1.0f);
-                if (inner.cut && tree == NONE) {
+                if (tree != NONE) {
+                    entry = tree;
+                    entry_t = inner.base;
+                    is_new = true;
+                    ++at;
+                    keep(at, inner);
+                    frame = inner;
+                } else if (inner.cut) {
+                    meets = true;
+                    is_proxy = true;
+                    surface = KIND_SPHERE;
                     const vec4 proxy0 = nodes(node + NODE_PROXY), proxy1 = nodes(node + NODE_PROXY + 1u),
                                proxy2 = nodes(node + NODE_PROXY + 2u);
-                    vec3 o = vec3(dot(xyz_of(proxy0), inner.origin) + proxy0.w,
-                                        dot(xyz_of(proxy1), inner.origin) + proxy1.w,
-                                        dot(xyz_of(proxy2), inner.origin) + proxy2.w);
-                    vec3 d = vec3(dot(xyz_of(proxy0), inner.direction), dot(xyz_of(proxy1), inner.direction),
-                                  dot(xyz_of(proxy2), inner.direction));
-                    mat3 squeezed = mat3(1.0f);
-                    const bool widened = FAINTS && (inner.faint || (marks.y & NODE_FAINT) != 0u);
+                    o = vec3(dot(xyz_of(proxy0), inner.origin) + proxy0.w, dot(xyz_of(proxy1), inner.origin) + proxy1.w,
+                             dot(xyz_of(proxy2), inner.origin) + proxy2.w);
+                    d = vec3(dot(xyz_of(proxy0), inner.direction), dot(xyz_of(proxy1), inner.direction),
+                             dot(xyz_of(proxy2), inner.direction));
+                    widened = FAINTS && (inner.faint || (marks.y & NODE_FAINT) != 0u);
                     if (widened) {
                         squeezed = squeezing(to_world(at + 1, inner.scale, xyz_of(proxy0), xyz_of(proxy1), xyz_of(proxy2)),
                                              least_half_width(place, radius));
                         o = squeezed * o;
                         d = squeezed * d;
                     }
-                    met = meet_sphere(o, d, near, far, t, normal);
-                    if (widened) normal = squeezed * normal;
-                    if (met) {
-                        normal = rows_transposed(proxy0, proxy1, proxy2, normal);
-                        keep(at + 1, inner);
-                    }
-                    is_proxy = true;
-                } else if (tree != NONE) {
-                    next = tree;
-                    next_t = inner.base;
-                    ++at;
-                    keep(at, inner);
-                    frame = inner;
-                    per_unit = 1.0f / frame.unit;
-                    if (!EVEN) reciprocal = 1.0f / never_zero(frame.direction);
                 }
             } else {
                 ++lost;
             }
-            if (met) {
-                met_normal = normal;
-                hit.t = inner.base + t * inner.unit;
-                last = is_proxy ? at + 1 : at;
-                leaf = part;
+            if (meets) {
+                const int most_crossings = PICTURES ? 4 : 1;
+                float begin = (least - inner.base) * inner_per_unit;
+                const float end = (hit.t - inner.base) * inner_per_unit;
+                Site site;
+                site.kind = surface;
+                site.uv = vec2(0.0f);
+                for (int crossing = 0; crossing < most_crossings; ++crossing) {
+                    met = meet_primitive(surface, nodes(node + NODE_LOOK).z, o, d, begin, end, t, normal);
+                    site.point = (is_proxy ? inner.origin : o) + t * (is_proxy ? inner.direction : d);
+                    if (!PICTURES || !met || is_proxy || scene.tables.y == 0u || !is_clear(at, number, site)) break;
+                    begin = t;
+                    met = false;
+                }
+                if (met) {
+                    hit.t = inner.base + t * inner.unit;
+                    if (widened) normal = squeezed * normal;
+                    if (is_proxy)
+                        normal = rows_transposed(nodes(node + NODE_PROXY), nodes(node + NODE_PROXY + 1u),
+                                                 nodes(node + NODE_PROXY + 2u), normal);
+                    meeting.last = is_proxy ? at + 1 : at;
+                    meeting.part = number;
+                    meeting.is_proxy = is_proxy;
+                    meeting.normal = normal;
+                    meeting.site = site;
+                    meeting.scale = frame.scale;
+                    if (is_proxy) met_marks[at + 1] = number | FRAME_CUT;
+                }
             }
         }
-        ++visits;
         if (met) {
             found = true;
             if (any) break;
-            take_hit(last, leaf, is_proxy, direction, met_normal, site, hit);
+            keep_way(meeting.is_proxy ? meeting.last - 1 : meeting.last);
+            // A pattern's is the scale of frames that the walk may leave.
+            if (PATTERNS) hit.pattern_size = meeting.is_proxy ? 0.0f : pattern_size_of(meeting);
         }
         if (visits > scene.visits.x) {
             // What is left is drawn as coarsely as may be, then not at all.
@@ -560,26 +601,30 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             hurries = true;
             visits -= scene.visits.y;
         }
-        const bool goes_down = next != NONE;
-        while (next == NONE && later > 0) {
-            --later;
-            if (later_t[later] < hit.t) {
-                next = later_entry[later];
-                next_t = later_t[later];
+        if (entry == NONE) {
+            while (entry == NONE && later > 0) {
+                --later;
+                if (later_t[later] < hit.t) {
+                    entry = later_entry[later];
+                    entry_t = later_t[later];
+                }
+            }
+            if (entry == NONE) break;
+            if (later < frame.waiting) {
+                do
+                    --at;
+                while (later < int(frame_marks[at].w));
+                frame = kept(at, direction);
+                is_new = true;
             }
         }
-        if (next == NONE) break;
-        if (!goes_down && later < frame.waiting) {
-            do
-                --at;
-            while (later < int(frame_marks[at].w));
-            frame = kept(at, direction);
+        if (is_new) {
             per_unit = 1.0f / frame.unit;
             if (!EVEN) reciprocal = 1.0f / never_zero(frame.direction);
+            shift = -frame.origin * reciprocal;
         }
-        entry = next;
-        entry_t = next_t;
     }
     steps += visits;
+    if (found && !any) take_hit(meeting, hit);
     return found;
 }

@@ -12,10 +12,14 @@
 namespace graftal {
 namespace {
 
-/// The number of times that each entry is met below a node, whose boxes must lie in `outer`.
+/// The number of times that each entry is met below a node, whose boxes must lie in `outer`; or at a single entry.
 void walk(const std::vector<glm::vec4>& boxes, std::uint32_t node, const Box& outer, int depth,
           std::map<std::uint32_t, int>& met, int& deepest) {
     deepest = std::max(deepest, depth);
+    if ((node & ~ENTRY_NUMBER) != 0) {
+        ++met[node];
+        return;
+    }
     for (std::uint32_t i = 0; i < 4; ++i) {
         const glm::vec4& low = boxes[node * BOX_SIZE + 2 * i];
         const glm::vec4& high = boxes[node * BOX_SIZE + 2 * i + 1];

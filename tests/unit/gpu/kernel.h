@@ -22,6 +22,7 @@
     inline thread_local uvec4 frame_marks[MOST_FRAMES]; \
     inline thread_local vec3 frame_directions[MOST_FRAMES]; \
     inline thread_local vec2 frame_sizes[MOST_FRAMES];
+#define MET_MARKS inline thread_local uint met_marks[MOST_FRAMES];
 #define SPACES inline thread_local mat3 spaces[MOST_FRAMES];
 #define STEPS inline thread_local uint rays = 0, steps = 0, lost = 0;
 #define WAITING_PATHS inline thread_local Path waiting_paths[MOST_WAITING];
@@ -38,7 +39,7 @@ inline constexpr float PI = 3.14159265358979f;
 inline constexpr float FAR = 1e30f;
 inline constexpr int MOST_FRAMES = 64, MOST_LATER = 5 * MOST_FRAMES;
 inline thread_local bool STRETCHED = false, EVEN = false, FAINTS = false, PATTERNS = false, PICTURES = false,
-                         GLASS = false;
+                         GLASS = false, MESHES = false;
 inline thread_local std::uint32_t KINDS = 0;
 
 inline thread_local const FlatModel* model = nullptr;
@@ -56,6 +57,7 @@ inline void use(const FlatModel& flat) {
     PICTURES = has.pictured;
     GLASS = has.glassy;
     KINDS = has.kinds;
+    MESHES = (KINDS & (1u << KIND_MESH)) != 0;
 }
 
 inline uint min_uint(uint a, uint b) {

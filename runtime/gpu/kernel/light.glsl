@@ -95,6 +95,13 @@ struct Path {
     Inside inside;
 };
 
+/// Where a path has met a surface: all that it keeps of that while a ray is on its way to a light. The fewer
+/// registers it takes, the more rays a device has at once.
+struct Spot {
+    vec3 position, normal, facet, rgb;
+    uint material;
+};
+
 struct Point {
     vec3 position, normal, facet, to_viewer, rgb;
     Material material;
@@ -189,18 +196,29 @@ void share_light(Inside inside, INOUT(Point) point) {
     point.body *= 1.0f - material.transparency;
 }
 
-Point point_of(Path path, Hit hit, INOUT(Stream) stream) {
-    Point point;
-    point.normal = dot(hit.normal, path.direction) > 0.0f ? -hit.normal : hit.normal;
-    point.position = path.origin + hit.t * path.direction;
-    point.facet = point.normal;
-    point.to_viewer = -path.direction;
-    point.rgb = hit.rgb;
-    point.material = material_of(hit.material);
-    if (is_blurred(point.material))
-        point.facet = visible_facet(point.normal, point.to_viewer, point.material.blur, next_place(stream));
+Spot spot_of(Path path, Hit hit, INOUT(Stream) stream) {
+    Spot spot;
+    spot.normal = dot(hit.normal, path.direction) > 0.0f ? -hit.normal : hit.normal;
+    spot.position = path.origin + hit.t * path.direction;
+    spot.facet = spot.normal;
+    spot.rgb = hit.rgb;
+    spot.material = hit.material;
+    const Material material = material_of(hit.material);
+    if (is_blurred(material))
+        spot.facet = visible_facet(spot.normal, -path.direction, material.blur, next_place(stream));
     // Exactly on the ground, its own shadow cannot begin on the way to a low sun.
-    if (hit.is_level) point.position.y = hit.level;
+    if (hit.is_level) spot.position.y = hit.level;
+    return spot;
+}
+
+Point point_of(Path path, Spot spot) {
+    Point point;
+    point.position = spot.position;
+    point.normal = spot.normal;
+    point.facet = spot.facet;
+    point.to_viewer = -path.direction;
+    point.rgb = spot.rgb;
+    point.material = material_of(spot.material);
     share_light(path.inside, point);
     return point;
 }
@@ -430,9 +448,11 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
         cross_surface(path.inside, solid_of(material_of(scene.visits.z)));
     int waiting = 0;
     vec3 sum = vec3(0.0f);
-    Point point;
-    float caught = 0.0f, scattered = 0.0f, shadow_least = 0.0f;
-    bool sky_later = false;
+    Spot spot;
+    spot.position = o;
+    spot.normal = spot.facet = spot.rgb = -d;
+    spot.material = 0u;
+    float caught = 0.0f;
     uint source = sources;
     // The ray to a light.
     bool to_light = false;
@@ -451,7 +471,7 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
         const bool any = to_light && !GLASS;
         const float farthest = min(most, scene.limits.x);
         const bool found = meet_first(from, towards, least, farthest, any, hit);
-        bool ends = false;
+        bool ends = false, is_new = false;
         if (to_light) {
             if (!found) {
                 sum += light;
@@ -485,17 +505,9 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
             }
             if (found || caught > 0.0f) {
                 path.weight *= left_after(path.inside, hit.t);
-                point = point_of(path, hit, stream);
-                scattered = path.bounces < bounces && !(caught > 0.0f)
-                                ? point.body * (point.material.diffuse + point.material.translucency) *
-                                      largest_of(point.rgb)
-                                : 0.0f;
-                sky_later = !has_bright_sky() && path.counts * scattered >= scene.limits.y;
-                shadow_least = least_distance(point.position, SHADOW_PIXELS);
-                const vec3 own = point.body * (point.material.ambient * xyz_of(scene.ambient) +
-                                               vec3(point.material.emission));
-                sum += (caught > 0.0f ? caught : 1.0f) * path.weight * own * point.rgb;
+                spot = spot_of(path, hit, stream);
                 source = 0u;
+                is_new = true;
             } else {
                 if (path.takes_sky) {
                     const bool shown = path.bounces == 0u && scene.sky_axis.w == 0.0f;
@@ -505,6 +517,16 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
             }
         }
         to_light = false;
+        const Point point = point_of(path, spot);
+        const float scattered = path.bounces < bounces && !(caught > 0.0f)
+                                    ? point.body * (point.material.diffuse + point.material.translucency) *
+                                          largest_of(point.rgb)
+                                    : 0.0f;
+        const bool sky_later = !has_bright_sky() && path.counts * scattered >= scene.limits.y;
+        const float shadow_least = least_distance(point.position, SHADOW_PIXELS);
+        if (is_new)
+            sum += (caught > 0.0f ? caught : 1.0f) * path.weight * point.body *
+                   (point.material.ambient * xyz_of(scene.ambient) + vec3(point.material.emission)) * point.rgb;
         while (!ends && !to_light && source < sources) {
             ToLight to;
             if (source < scene.counts.x)

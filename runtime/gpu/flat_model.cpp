@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -12,6 +14,7 @@
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stage_price.h"
 #include "runtime/gpu/flat_boxes.h"
+#include "runtime/gpu/flat_cells.h"
 #include "runtime/gpu/flat_light.h"
 #include "runtime/gpu/flat_words.h"
 
@@ -37,19 +40,6 @@ Box box_of(const FlatEdge& edge) {
     return {{edge.box[0], edge.box[1], edge.box[2]}, {edge.box[3], edge.box[4], edge.box[5]}};
 }
 
-/// Whether the map of an edge scales evenly, as single precision sees it.
-bool is_similarity(const FlatEdge& edge) {
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k <= i; ++k) {
-            double product = 0;
-            for (std::size_t row = 0; row < 3; ++row)
-                product +=
-                    edge.child_from_parent[3 * i + row].value() * edge.child_from_parent[3 * k + row].value();
-            if (!(std::abs(product * edge.stretch * edge.stretch - (i == k ? 1 : 0)) < 1e-6)) return false;
-        }
-    return true;
-}
-
 /// Whether rays keep their direction in the child's frame.
 bool keeps_directions(const FlatEdge& edge) {
     for (std::size_t i = 0; i < 9; ++i)
@@ -60,7 +50,8 @@ bool keeps_directions(const FlatEdge& edge) {
 
 class Flattener {
   public:
-    Flattener(const FlatGraph& graph, FlatModel& flat) : graph_(graph), flat_(flat) {}
+    Flattener(const FlatGraph& graph, FlatModel& flat)
+        : graph_(graph), cells_(flat_cells(graph)), flat_(flat) {}
 
     /// False where that would take too much memory.
     bool run(Vec3 eye, const Box& drawn, std::uint32_t root_steps, std::uint64_t most_bytes) {
@@ -69,10 +60,10 @@ class Flattener {
             if (flat_.bytes() > most_bytes) return false;
         }
         add_root(eye);
-        for (const FlatEdge& edge : graph_.edges)
+        for (const PassedEdge& edge : cells_.edges)
             add_edge(edge);
-        for (const FlatNode& node : graph_.nodes)
-            add_node(node);
+        for (std::size_t id = 0; id < graph_.nodes.size(); ++id)
+            add_node(graph_.nodes[id], cells_.shallow[id], cells_.deep[id]);
         std::vector<FlatItem> root = {{{drawn.min - eye, drawn.max - eye}, ENTRY_PART}};
         flat_.scene.counts.y = build_flat_boxes(root, flat_.boxes);
         flat_.scene.counts.z = root_steps;
@@ -92,10 +83,11 @@ class Flattener {
                 FloatPair(inverse_linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
         for (std::size_t i = 0; i < 3; ++i)
             edge.origin[i] = FloatPair(place.translation[static_cast<int>(i)] - eye[static_cast<int>(i)]);
-        add_edge(edge);
+        add_edge({edge});
     }
 
-    void add_edge(const FlatEdge& edge) {
+    void add_edge(const PassedEdge& passed) {
+        const FlatEdge& edge = passed.edge;
         const auto& m = edge.child_from_parent;
         for (std::size_t row = 0; row < 3; ++row)
             flat_.parts.emplace_back(m[row].high, m[3 + row].high, m[6 + row].high, edge.origin[row].high);
@@ -110,10 +102,13 @@ class Flattener {
             features.kinds |= 1u << (is_mesh ? KIND_MESH
                                              : static_cast<unsigned>(graph_.primitives[primitive].kind()));
         flat_.looks.push_back(of_paint(edge.tint));
-        flat_.looks.emplace_back(edge.turns, 0, 0, 0);
+        flat_.looks.emplace_back(edge.turns, flat_bits(part_number(passed.before)),
+                                 flat_bits(part_number(passed.last)), 0);
     }
 
-    void add_node(const FlatNode& node) {
+    static std::uint32_t part_number(std::uint32_t edge) { return edge == flat_none ? NONE : edge + 1; }
+
+    void add_node(const FlatNode& node, std::span<const std::uint32_t> shallow, const FlatCell& deep) {
         std::uint32_t flags = 0, tree = NONE, stop_tree = NONE;
         float shape = 0, inner_radius = 1;
         if (node.primitive != flat_none) {
@@ -130,8 +125,10 @@ class Flattener {
             if (node.terminal) flags |= NODE_TERMINAL;
             if (node.faint) flags |= NODE_FAINT;
             if (node.widens) flags |= NODE_WIDENS;
-            tree = tree_of(node.first_edge, node.edge_count);
-            stop_tree = tree_of(node.first_edge + node.edge_count, node.stop_edge_count);
+            tree = tree_of(shallow);
+            std::vector<std::uint32_t> stops(node.stop_edge_count);
+            std::iota(stops.begin(), stops.end(), node.first_edge + node.edge_count);
+            stop_tree = tree_of(stops);
         }
         flat_.nodes.emplace_back(node.centre[0], node.centre[1], node.centre[2], 0.5f * node.diameter);
         flat_.nodes.emplace_back(node.cut_detail, flat_bits(flags), flat_bits(tree), flat_bits(stop_tree));
@@ -148,6 +145,8 @@ class Flattener {
         flat_.nodes.push_back(node.primitive == flat_none ? of_paint(node.proxy)
                                                           : extents(graph_.primitives[node.primitive]));
         flat_.nodes.emplace_back(flat_bits(material_number(node.finish)), 0.0f, shape, inner_radius);
+        flat_.nodes.emplace_back(deep.least_size, deep.reach, flat_bits(tree_of(deep.edges)),
+                                 flat_bits(deep.least_steps));
     }
 
     /// Half of a primitive's extents, and 1 if it has bounds.
@@ -156,10 +155,10 @@ class Flattener {
         return traits.bounded ? flat_four(0.5 * traits.box(primitive).size(), 1) : glm::vec4(0);
     }
 
-    std::uint32_t tree_of(std::uint32_t first, std::uint32_t count) {
+    std::uint32_t tree_of(std::span<const std::uint32_t> edges) {
         std::vector<FlatItem> items;
-        for (std::uint32_t i = first; i < first + count; ++i)
-            items.push_back({box_of(graph_.edges[i]), ENTRY_PART | (i + 1)});
+        for (const std::uint32_t i : edges)
+            items.push_back({box_of(cells_.edges[i].edge), ENTRY_PART | (i + 1)});
         return build_flat_boxes(items, flat_.boxes);
     }
 
@@ -192,6 +191,7 @@ class Flattener {
     }
 
     const FlatGraph& graph_;
+    const FlatCells cells_;
     FlatModel& flat_;
     std::vector<std::uint32_t> meshes_; ///< by primitive
 };

@@ -16,11 +16,11 @@
 #define PART_SIZE 4u
 
 // looks[], by part: its tint, the colour fixed and the share that is open to what lies below it; then of a
-// primitive length_in_turns().
+// primitive length_in_turns(), and of a part that stands for two the one before and the last, or NONE.
 #define LOOK_SIZE 2u
 
 // nodes[]: an object in its own frame.
-#define NODE_SIZE 8u
+#define NODE_SIZE 9u
 #define NODE_BALL 0u    // centre, radius
 #define NODE_FACTS 1u   // cut_detail (0: never cut), flags, tree of its parts, tree of what is drawn where it is cut
 #define NODE_PROXY 2u   // three rows of proxy_from_node
@@ -28,6 +28,7 @@
 #define NODE_STANDIN 6u // likewise, of its proxy; of a primitive half of its extents, and w: 1 if it is bounded
 #define NODE_LOOK 7u    // the proxy's material, nothing, the radius at the end of what tapers, of a primitive the
                         // radius of the largest ball in it
+#define NODE_DEEP 8u    // FlatCell: its least size, reach, tree or NONE, least steps
 
 // Flags of a node. The lowest bits are the kind of a primitive.
 #define NODE_KIND 0xffu

@@ -56,6 +56,21 @@ float detail_per_unit(vec3 from_eye, float radius) {
     return scene.projection.x / (max(distance - radius, scene.projection.y) * coarser);
 }
 
+/// At most the detail of a length of 1 anywhere so far about that point.
+float least_detail_per_unit(vec3 from_eye, float reach) {
+    if (scene.projection.w == 0.0f) return FAR;
+    const float aside = abs(dot(from_eye, xyz_of(scene.right))), above = abs(dot(from_eye, xyz_of(scene.up)));
+    const bool parallel = scene.direction.w > 0.0f;
+    const float along = dot(from_eye, xyz_of(scene.direction)), depth = parallel ? 1.0f : along;
+    const bool seen = aside * scene.edges.y - depth * scene.edges.x <= -2.0f * reach &&
+                      above * scene.edges.w - depth * scene.edges.z <= -2.0f * reach && (parallel || along >= reach);
+    const float coarser = seen ? 1.0f : 8.0f;
+    if (scene.projection.z > 0.0f) return 1.0f / (scene.projection.z * coarser);
+    if (parallel) return scene.projection.x / coarser;
+    const float distance = max(along, 0.5f * length(from_eye)) + reach;
+    return scene.projection.x / (max(distance, scene.projection.y) * coarser);
+}
+
 vec3 rows_transposed(vec4 a, vec4 b, vec4 c, vec3 v) {
     return v.x * xyz_of(a) + v.y * xyz_of(b) + v.z * xyz_of(c);
 }
@@ -285,7 +300,10 @@ void look_along(Meeting meeting, INOUT(Hit) hit) {
     vec4 tint = vec4(0.0f, 0.0f, 0.0f, 1.0f);
     vec3 inherited = xyz_of(materials(0u));
     hit.material = 0u;
-    hit.node = meeting.last > 0 ? node_of(met_part(meeting.last)) : NONE;
+    const uint before = bits_of(looks(meeting.part * LOOK_SIZE + 1u)).y;
+    hit.node = !meeting.is_proxy && before != NONE ? node_of(before)
+               : meeting.last > 0                  ? node_of(met_part(meeting.last))
+                                                   : NONE;
     hit.levels = 0u;
     uint above = NONE;
     const int end = meeting.is_proxy ? meeting.last : meeting.last + 1;
@@ -344,18 +362,23 @@ vec3 limit_normal(Meeting meeting) {
     int level = 0;
     float weight = 1.0f;
     for (int i = meeting.last; i > 0; --i) {
-        const float size = length(sum);
-        if (!(size > 0.0f)) return meeting.normal;
-        const uint part = met_part(i);
-        sum = size * normal_above(part, sum / size);
-        if (i == 1 || level == most_levels) continue;
-        point = point_above(part, point);
-        const uint node = node_of(met_part(i - 1));
-        if ((bits_of(nodes(node * NODE_SIZE + NODE_FACTS)).y & NODE_UNENDING) == 0u) continue;
-        ++level;
-        weight /= LIMIT_RATIO;
-        const vec4 ball = nodes(node * NODE_SIZE + NODE_BALL);
-        if (ball.w > 0.0f) sum += weight / ball.w * (point - xyz_of(ball));
+        // Parts that stand for two are taken apart, the last first.
+        for (uint part = met_part(i), before; part != NONE; part = before) {
+            const uvec4 passed = bits_of(looks(part * LOOK_SIZE + 1u));
+            before = passed.y;
+            const uint step = before == NONE ? part : passed.z;
+            const float size = length(sum);
+            if (!(size > 0.0f)) return meeting.normal;
+            sum = size * normal_above(step, sum / size);
+            if ((i == 1 && before == NONE) || level == most_levels) continue;
+            point = point_above(step, point);
+            const uint node = node_of(before == NONE ? met_part(i - 1) : before);
+            if ((bits_of(nodes(node * NODE_SIZE + NODE_FACTS)).y & NODE_UNENDING) == 0u) continue;
+            ++level;
+            weight /= LIMIT_RATIO;
+            const vec4 ball = nodes(node * NODE_SIZE + NODE_BALL);
+            if (ball.w > 0.0f) sum += weight / ball.w * (point - xyz_of(ball));
+        }
     }
     return sum;
 }
@@ -524,7 +547,11 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 const float detail = 2.0f * radius * detail_per_unit(place, radius);
                 const bool small = hurries || detail <= node_facts.x;
                 inner.cut = ((marks.y & NODE_UNENDING) != 0u && inner.steps == 0u) || (node_facts.x > 0.0f && small);
-                const uint tree = inner.cut ? marks.w : marks.z;
+                uint tree = inner.cut ? marks.w : marks.z;
+                const vec4 deep = nodes(node + NODE_DEEP);
+                if (!inner.cut && !hurries && bits_of(deep).z != NONE && inner.steps >= bits_of(deep).w &&
+                    inner.scale * deep.x * least_detail_per_unit(place, inner.scale * deep.y) > 1.0f)
+                    tree = bits_of(deep).z;
                 if (inner.cut && tree != NONE && (marks.y & NODE_FAINT) != 0u && !inner.faint)
                     inner.faint = detail <= 1.0f;
                 if (FAINTS && (marks.y & NODE_WIDENS) != 0u)

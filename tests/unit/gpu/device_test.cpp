@@ -112,8 +112,8 @@ Graph chain(int length) {
 
 TEST(Gpu, PartsThatLieTooDeepAreCounted) {
     EXPECT_FALSE(draw(chain(20), {0, 0, 40, 30}, 1).seen.lost);
-    EXPECT_TRUE(draw(chain(100), {0, 0, 40, 30}, 1).seen.lost);
-    EXPECT_TRUE(draw(chain(300), {0, 0, 40, 30}, 1, GpuPicture::most_frames).seen.lost);
+    EXPECT_TRUE(draw(chain(600), {0, 0, 40, 30}, 1).seen.lost);
+    EXPECT_TRUE(draw(chain(2500), {0, 0, 40, 30}, 1, GpuPicture::most_frames).seen.lost);
 }
 
 TEST(Gpu, DrawsAHundredObjectsInEachOther) {

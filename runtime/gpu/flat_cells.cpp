@@ -1,0 +1,187 @@
+#include "runtime/gpu/flat_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include <glm/geometric.hpp>
+
+#include "compiler/support/stretch.h"
+
+namespace graftal {
+
+namespace {
+
+/// Small cells stay in the caches of a card, and few levels spare most of what there is to spare.
+constexpr std::size_t most_parts = 128, most_new_edges = 65'536;
+constexpr int most_levels = 6;
+
+Mat3 linear_of(const FlatEdge& edge) {
+    Mat3 linear;
+    for (std::size_t i = 0; i < 9; ++i)
+        linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)] = edge.child_from_parent[i].value();
+    return linear;
+}
+
+Affine parent_from_child(const FlatEdge& edge) {
+    Affine map;
+    map.linear = inverse(Affine{linear_of(edge), Vec3(0.0)}).linear;
+    for (int axis = 0; axis < 3; ++axis)
+        map.translation[axis] = edge.origin[static_cast<std::size_t>(axis)].value();
+    return map;
+}
+
+bool is_endless(const FlatEdge& edge) {
+    return !(edge.box[3] < flat_endless);
+}
+
+/// In the frame of the first edge's parent: within both what is known of the child and of its part.
+std::array<float, 6> box_of(const FlatEdge& first, const FlatEdge& second, const Affine& parent_from_middle) {
+    if (is_endless(second)) return second.box;
+    const Box part = transformed(parent_from_middle, {Vec3(second.box[0], second.box[1], second.box[2]),
+                                                      Vec3(second.box[3], second.box[4], second.box[5])});
+    std::array<float, 6> box = first.box;
+    for (int axis = 0; axis < 3; ++axis) {
+        constexpr float infinity = std::numeric_limits<float>::infinity();
+        const auto k = static_cast<std::size_t>(axis);
+        box[k] = std::max(box[k], std::nextafter(static_cast<float>(part.min[axis]), -infinity));
+        box[k + 3] = std::min(box[k + 3], std::nextafter(static_cast<float>(part.max[axis]), infinity));
+        if (box[k] > box[k + 3]) std::swap(box[k], box[k + 3]); // by rounding, of what is flat
+    }
+    return box;
+}
+
+class Cells {
+  public:
+    explicit Cells(const FlatGraph& graph) : graph_(graph) {}
+
+    FlatCells run() {
+        for (const FlatEdge& edge : graph_.edges)
+            cells_.edges.push_back({edge});
+        cells_.deep.resize(graph_.nodes.size());
+        for (const FlatNode& node : graph_.nodes) {
+            std::vector<std::uint32_t> own;
+            for (std::uint32_t i = 0; i < node.edge_count; ++i)
+                own.push_back(node.first_edge + i);
+            FlatCell cell{std::move(own), std::numeric_limits<float>::infinity(), 0, node.unending ? 1u : 0u};
+            while (expand(node, cell, most_new_edges, [&](const FlatEdge& edge) { return is_group(edge, cell); })) {
+            }
+            cells_.shallow.push_back(std::move(cell.edges));
+        }
+        for (std::size_t id = 0; id < graph_.nodes.size(); ++id)
+            cells_.deep[id] = deep_cell(graph_.nodes[id], cells_.shallow[id]);
+        return std::move(cells_);
+    }
+
+  private:
+    static bool is_union(const FlatNode& node) { return node.primitive == flat_none && node.edge_count > 0; }
+
+    /// A union that is never cut where the parts passed over are not.
+    bool is_group(const FlatEdge& edge, const FlatCell& cell) const {
+        const FlatNode& child = graph_.nodes[edge.child];
+        return is_union(child) && child.cut_detail == 0 && (!child.unending || edge.levels < cell.least_steps);
+    }
+
+    FlatCell deep_cell(const FlatNode& node, const std::vector<std::uint32_t>& shallow) {
+        FlatCell cell{shallow, std::numeric_limits<float>::infinity(), 0, node.unending ? 1u : 0u};
+        if (!is_union(node)) return {};
+        bool deeper = false;
+        const auto is_passed = [&](const FlatEdge& edge) {
+            return is_union(graph_.nodes[edge.child]) && !is_endless(edge) && is_similarity(edge);
+        };
+        for (int level = 0; level < most_levels && expand(node, cell, most_parts, is_passed); ++level)
+            deeper = true;
+        return deeper ? cell : FlatCell{};
+    }
+
+    /// Puts parts of those edges that `holds` names in their places; false if there are none, or too many.
+    template<typename Holds>
+    bool expand(const FlatNode& node, FlatCell& cell, std::size_t most, const Holds& holds) {
+        std::size_t count = 0, added = 0;
+        for (const std::uint32_t number : cell.edges) {
+            const FlatEdge& edge = cells_.edges[number].edge;
+            const std::size_t parts = holds(edge) ? parts_of(edge.child) : 0;
+            added += parts;
+            count += std::max<std::size_t>(parts, 1);
+        }
+        if (added == 0 || count > most || added_ + added > most_new_edges) return false;
+        added_ += added;
+        FlatCell deeper = cell;
+        deeper.edges.clear();
+        for (const std::uint32_t number : cell.edges) {
+            const FlatEdge edge = cells_.edges[number].edge;
+            if (!holds(edge)) {
+                deeper.edges.push_back(number);
+                continue;
+            }
+            pass_over(node, edge, deeper);
+            const FlatNode& child = graph_.nodes[edge.child];
+            if (edge.child < cells_.shallow.size()) {
+                for (const std::uint32_t last : cells_.shallow[edge.child])
+                    deeper.edges.push_back(join(number, last));
+            } else {
+                for (std::uint32_t i = 0; i < child.edge_count; ++i)
+                    deeper.edges.push_back(join(number, child.first_edge + i));
+            }
+        }
+        cell = std::move(deeper);
+        return true;
+    }
+
+    std::size_t parts_of(std::uint32_t node) const {
+        return node < cells_.shallow.size() ? cells_.shallow[node].size() : graph_.nodes[node].edge_count;
+    }
+
+    /// Notes what must hold for a node to be gone through.
+    void pass_over(const FlatNode& node, const FlatEdge& edge, FlatCell& cell) const {
+        const FlatNode& child = graph_.nodes[edge.child];
+        if (child.unending) cell.least_steps = std::max(cell.least_steps, edge.levels + 1);
+        if (child.cut_detail == 0) return;
+        cell.least_size = std::min(cell.least_size, child.diameter * edge.stretch / child.cut_detail);
+        const auto at = [](const std::array<float, 3>& v) { return Vec3(v[0], v[1], v[2]); };
+        const Vec3 centre = parent_from_child(edge)(at(child.centre));
+        cell.reach = std::max(cell.reach, static_cast<float>(glm::distance(centre, at(node.centre)) * (1 + 1e-6)));
+    }
+
+    std::uint32_t join(std::uint32_t before, std::uint32_t last) {
+        const FlatEdge first = cells_.edges[before].edge, second = cells_.edges[last].edge;
+        const Affine parent_from_middle = parent_from_child(first);
+        const Affine whole = parent_from_middle * parent_from_child(second);
+        const Mat3 linear = linear_of(second) * linear_of(first);
+        FlatEdge edge = second;
+        edge.levels = first.levels + second.levels;
+        if (second.material == flat_none) edge.material = first.material;
+        edge.stretch = is_similarity(first) && is_similarity(second) ? first.stretch * second.stretch
+                                                                     : static_cast<float>(largest_stretch(whole.linear));
+        edge.tint = second.tint.under(first.tint);
+        for (std::size_t i = 0; i < 9; ++i)
+            edge.child_from_parent[i] = FloatPair(linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
+        for (std::size_t i = 0; i < 3; ++i)
+            edge.origin[i] = FloatPair(whole.translation[static_cast<int>(i)]);
+        edge.box = box_of(first, second, parent_from_middle);
+        cells_.edges.push_back({edge, before, last});
+        return static_cast<std::uint32_t>(cells_.edges.size() - 1);
+    }
+
+    const FlatGraph& graph_;
+    FlatCells cells_;
+    std::size_t added_ = 0;
+};
+
+} // namespace
+
+bool is_similarity(const FlatEdge& edge) {
+    const Mat3 squares = glm::transpose(linear_of(edge)) * linear_of(edge) * double(edge.stretch) * double(edge.stretch);
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k <= i; ++k)
+            if (!(std::abs(squares[i][k] - (i == k ? 1 : 0)) < 1e-6)) return false;
+    return true;
+}
+
+FlatCells flat_cells(const FlatGraph& graph) {
+    return Cells(graph).run();
+}
+
+} // namespace graftal

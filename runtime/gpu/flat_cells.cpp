@@ -14,8 +14,8 @@ namespace graftal {
 
 namespace {
 
-/// Small cells stay in the caches of a card, and few levels spare most of what there is to spare.
-constexpr std::size_t most_parts = 128, most_new_edges = 65'536;
+/// Small cells stay in the caches of a card.
+constexpr std::size_t most_parts = 512, most_deep_parts = 1024, most_new_edges = 65'536;
 constexpr int most_levels = 6;
 
 Mat3 linear_of(const FlatEdge& edge) {
@@ -70,8 +70,7 @@ class Cells {
             }
             cells_.shallow.push_back(std::move(cell.edges));
         }
-        for (std::size_t id = 0; id < graph_.nodes.size(); ++id)
-            cells_.deep[id] = deep_cell(graph_.nodes[id], cells_.shallow[id]);
+        add_levels();
         return std::move(cells_);
     }
 
@@ -84,16 +83,30 @@ class Cells {
         return is_union(child) && child.cut_detail == 0 && (!child.unending || edge.levels < cell.least_steps);
     }
 
-    FlatCell deep_cell(const FlatNode& node, const std::vector<std::uint32_t>& shallow) {
-        FlatCell cell{shallow, std::numeric_limits<float>::infinity(), 0, node.unending ? 1u : 0u};
-        if (!is_union(node)) return {};
-        bool deeper = false;
+    /// Makes all cells deeper, level by level, as long as there is room.
+    void add_levels() {
+        std::vector<FlatCell> cells;
+        for (std::size_t id = 0; id < graph_.nodes.size(); ++id)
+            cells.push_back({cells_.shallow[id], std::numeric_limits<float>::infinity(), 0,
+                             graph_.nodes[id].unending ? 1u : 0u});
         const auto is_passed = [&](const FlatEdge& edge) {
             return is_union(graph_.nodes[edge.child]) && !is_endless(edge) && is_similarity(edge);
         };
-        for (int level = 0; level < most_levels && expand(node, cell, most_parts, is_passed); ++level)
-            deeper = true;
-        return deeper ? cell : FlatCell{};
+        std::vector<bool> is_entered(graph_.nodes.size());
+        is_entered[graph_.root] = true;
+        for (const auto& shallow : cells_.shallow)
+            for (const std::uint32_t number : shallow)
+                is_entered[cells_.edges[number].edge.child] = true;
+        for (int level = 0; level < most_levels; ++level) {
+            std::size_t parts = 0;
+            for (std::size_t id = 0; id < graph_.nodes.size(); ++id) {
+                if (!is_entered[id] || !is_union(graph_.nodes[id])) continue;
+                if (parts < most_deep_parts && expand(graph_.nodes[id], cells[id], most_parts, is_passed))
+                    cells_.deep[id].push_back(cells[id]);
+                if (!cells_.deep[id].empty()) parts += cells_.deep[id].back().edges.size();
+            }
+            if (parts >= most_deep_parts / 2) break;
+        }
     }
 
     /// Puts parts of those edges that `holds` names in their places; false if there are none, or too many.

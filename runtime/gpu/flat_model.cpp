@@ -63,7 +63,9 @@ class Flattener {
         for (const PassedEdge& edge : cells_.edges)
             add_edge(edge);
         for (std::size_t id = 0; id < graph_.nodes.size(); ++id)
-            add_node(graph_.nodes[id], cells_.shallow[id], cells_.deep[id]);
+            add_node(graph_.nodes[id], cells_.shallow[id]);
+        for (std::size_t id = 0; id < graph_.nodes.size(); ++id)
+            add_cells(id);
         std::vector<FlatItem> root = {{{drawn.min - eye, drawn.max - eye}, ENTRY_PART}};
         flat_.scene.counts.y = build_flat_boxes(root, flat_.boxes);
         flat_.scene.counts.z = root_steps;
@@ -108,7 +110,7 @@ class Flattener {
 
     static std::uint32_t part_number(std::uint32_t edge) { return edge == flat_none ? NONE : edge + 1; }
 
-    void add_node(const FlatNode& node, std::span<const std::uint32_t> shallow, const FlatCell& deep) {
+    void add_node(const FlatNode& node, std::span<const std::uint32_t> shallow) {
         std::uint32_t flags = 0, tree = NONE, stop_tree = NONE;
         float shape = 0, inner_radius = 1;
         if (node.primitive != flat_none) {
@@ -145,8 +147,18 @@ class Flattener {
         flat_.nodes.push_back(node.primitive == flat_none ? of_paint(node.proxy)
                                                           : extents(graph_.primitives[node.primitive]));
         flat_.nodes.emplace_back(flat_bits(material_number(node.finish)), 0.0f, shape, inner_radius);
-        flat_.nodes.emplace_back(deep.least_size, deep.reach, flat_bits(tree_of(deep.edges)),
-                                 flat_bits(deep.least_steps));
+        flat_.nodes.emplace_back(0);
+    }
+
+    /// The deepest first, after all nodes.
+    void add_cells(std::size_t id) {
+        const std::vector<FlatCell>& deep = cells_.deep[id];
+        glm::vec4& facts = flat_.nodes[id * NODE_SIZE + NODE_CELLS];
+        facts.x = flat_bits(static_cast<std::uint32_t>(flat_.nodes.size()));
+        facts.y = flat_bits(static_cast<std::uint32_t>(deep.size()));
+        for (auto cell = deep.rbegin(); cell != deep.rend(); ++cell)
+            flat_.nodes.emplace_back(cell->least_size, cell->reach, flat_bits(tree_of(cell->edges)),
+                                     flat_bits(cell->least_steps));
     }
 
     /// Half of a primitive's extents, and 1 if it has bounds.

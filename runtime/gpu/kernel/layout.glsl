@@ -28,7 +28,8 @@
 #define NODE_STANDIN 6u // likewise, of its proxy; of a primitive half of its extents, and w: 1 if it is bounded
 #define NODE_LOOK 7u    // the proxy's material, nothing, the radius at the end of what tapers, of a primitive the
                         // radius of the largest ball in it
-#define NODE_DEEP 8u    // FlatCell: its least size, reach, tree or NONE, least steps
+#define NODE_CELLS 8u   // where its cells of several levels begin in nodes[], the deepest first, and how many there are; of
+                        // each FlatCell the least size, the reach, the tree, the least steps
 
 // Flags of a node. The lowest bits are the kind of a primitive.
 #define NODE_KIND 0xffu

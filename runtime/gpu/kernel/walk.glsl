@@ -548,10 +548,17 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 const bool small = hurries || detail <= node_facts.x;
                 inner.cut = ((marks.y & NODE_UNENDING) != 0u && inner.steps == 0u) || (node_facts.x > 0.0f && small);
                 uint tree = inner.cut ? marks.w : marks.z;
-                const vec4 deep = nodes(node + NODE_DEEP);
-                if (!inner.cut && !hurries && bits_of(deep).z != NONE && inner.steps >= bits_of(deep).w &&
-                    inner.scale * deep.x * least_detail_per_unit(place, inner.scale * deep.y) > 1.0f)
-                    tree = bits_of(deep).z;
+                if (!inner.cut && !hurries) {
+                    const uvec4 cells = bits_of(nodes(node + NODE_CELLS));
+                    for (uint i = cells.x; i < cells.x + cells.y; ++i) {
+                        const vec4 cell = nodes(i);
+                        if (inner.steps >= bits_of(cell).w &&
+                            inner.scale * cell.x * least_detail_per_unit(place, inner.scale * cell.y) > 1.0f) {
+                            tree = bits_of(cell).z;
+                            break;
+                        }
+                    }
+                }
                 if (inner.cut && tree != NONE && (marks.y & NODE_FAINT) != 0u && !inner.faint)
                     inner.faint = detail <= 1.0f;
                 if (FAINTS && (marks.y & NODE_WIDENS) != 0u)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -66,6 +67,11 @@ class Flattener {
             add_node(graph_.nodes[id], cells_.shallow[id]);
         for (std::size_t id = 0; id < graph_.nodes.size(); ++id)
             add_cells(id);
+        for (std::size_t part = 0; part < flat_.parts.size(); part += PART_SIZE) {
+            const std::size_t node = std::bit_cast<std::uint32_t>(flat_.parts[part + 3].y) * NODE_SIZE;
+            flat_.parts[part + 4] = flat_.nodes[node + NODE_BALL];
+            flat_.parts[part + 5] = flat_.nodes[node + NODE_FACTS];
+        }
         std::vector<FlatItem> root = {{{drawn.min - eye, drawn.max - eye}, ENTRY_PART}};
         flat_.scene.counts.y = build_flat_boxes(root, flat_.boxes);
         flat_.scene.counts.z = root_steps;
@@ -95,6 +101,7 @@ class Flattener {
             flat_.parts.emplace_back(m[row].high, m[3 + row].high, m[6 + row].high, edge.origin[row].high);
         flat_.parts.emplace_back(edge.stretch, flat_bits(edge.child),
                                  flat_bits(material_number(edge.material)), flat_bits(edge.levels));
+        flat_.parts.resize(flat_.parts.size() + 2);
         const std::uint32_t primitive = graph_.nodes[edge.child].primitive;
         FlatModel::Features& features = flat_.features;
         features.stretched = features.stretched || (primitive == flat_none && !is_similarity(edge));

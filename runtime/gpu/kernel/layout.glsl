@@ -12,8 +12,9 @@
 #define BOX_SIZE 8u
 
 // parts[]: an instance as rays go through it. The rows of the linear part of child_from_parent, and with each
-// an axis of the child's origin in the parent; then the stretch, the child, the material and the levels.
-#define PART_SIZE 4u
+// an axis of the child's origin in the parent; then the stretch, the child, the material and the levels; then
+// NODE_BALL and NODE_FACTS of the child again, which a ray so has at once.
+#define PART_SIZE 6u
 
 // looks[], by part: its tint, the colour fixed and the share that is open to what lies below it; then of a
 // primitive length_in_turns(), and of a part that stands for two the one before and the last, or NONE.

@@ -493,10 +493,9 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             entry = NONE;
             const uint first = number * PART_SIZE;
             const vec4 row0 = parts(first), row1 = parts(first + 1u), row2 = parts(first + 2u),
-                       facts = parts(first + 3u);
+                       facts = parts(first + 3u), ball = parts(first + 4u), node_facts = parts(first + 5u);
             const uint child = bits_of(facts).y, levels = bits_of(facts).w, node = child * NODE_SIZE;
             const float stretch = facts.x;
-            const vec4 node_facts = nodes(node + NODE_FACTS);
             const uvec4 marks = bits_of(node_facts);
             const uint kind = marks.y & NODE_KIND;
             const bool is_shape = (marks.y & NODE_PRIMITIVE) != 0u && kind != KIND_MESH;
@@ -528,12 +527,12 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 widened = FAINTS && frame.faint && kind != KIND_PLANE;
                 if (widened) {
                     // About its middle, in the frame that it is drawn in.
-                    const vec4 ball = nodes(node_of(frame.part) * NODE_SIZE + NODE_BALL);
-                    const vec3 place = place_of(xyz_of(ball), frame, at, origin, direction);
-                    const float width = least_half_width(place, frame.scale * ball.w);
+                    const vec4 whole = parts(frame.part * PART_SIZE + 4u);
+                    const vec3 place = place_of(xyz_of(whole), frame, at, origin, direction);
+                    const float width = least_half_width(place, frame.scale * whole.w);
                     squeezed = squeezing(to_world(at, frame.scale, xyz_of(row0), xyz_of(row1), xyz_of(row2)),
                                          width / nodes(node + NODE_LOOK).w);
-                    const vec3 centre = xyz_of(nodes(node + NODE_BALL));
+                    const vec3 centre = xyz_of(ball);
                     o = centre + squeezed * (o - centre);
                     d = squeezed * d;
                 }
@@ -541,7 +540,6 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 if (STRETCHED)
                     inner.scale =
                         place_space(at, frame.scale, xyz_of(row0), xyz_of(row1), xyz_of(row2), stretch);
-                const vec4 ball = nodes(node + NODE_BALL);
                 const float radius = inner.scale * ball.w;
                 const vec3 place = place_of(xyz_of(ball), inner, at + 1, origin, direction);
                 const float detail = 2.0f * radius * detail_per_unit(place, radius);

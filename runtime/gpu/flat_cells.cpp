@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <span>
+#include <map>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -158,7 +158,16 @@ class Cells {
         cell.reach = std::max(cell.reach, static_cast<float>(glm::distance(centre, at(node.centre)) * (1 + 1e-6)));
     }
 
+    /// One edge for two after each other. The last of them is always the graph's own, so that a way is taken apart
+    /// from its end.
     std::uint32_t join(std::uint32_t before, std::uint32_t last) {
+        const PassedEdge& passed = cells_.edges[last];
+        if (passed.before != flat_none) {
+            const std::uint32_t own = passed.last;
+            const auto [place, is_new] = joined_.try_emplace({before, passed.before}, 0);
+            if (is_new) place->second = join(before, passed.before);
+            return join(place->second, own);
+        }
         const FlatEdge first = cells_.edges[before].edge, second = cells_.edges[last].edge;
         const Affine parent_from_middle = parent_from_child(first);
         const Affine whole = parent_from_middle * parent_from_child(second);
@@ -180,6 +189,7 @@ class Cells {
 
     const FlatGraph& graph_;
     FlatCells cells_;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> joined_; ///< with what is several edges
     std::size_t added_ = 0;
 };
 

@@ -14,7 +14,7 @@ bool is_similarity(const FlatEdge& edge);
 struct PassedEdge {
     FlatEdge edge;
     std::uint32_t before = flat_none; ///< the two, by number in FlatCells::edges; none: the edge is the graph's own
-    std::uint32_t last = flat_none;
+    std::uint32_t last = flat_none;   ///< which is the graph's own
 };
 
 /// Parts of several levels of one node that are met as one set, while none of the nodes passed over is cut.

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <span>
 
@@ -97,8 +98,11 @@ class Flattener {
     void add_edge(const PassedEdge& passed) {
         const FlatEdge& edge = passed.edge;
         const auto& m = edge.child_from_parent;
-        for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t row = 0; row < 3; ++row) {
             flat_.parts.emplace_back(m[row].high, m[3 + row].high, m[6 + row].high, edge.origin[row].high);
+            if (flat_.features.paired)
+                flat_.lows.emplace_back(m[row].low, m[3 + row].low, m[6 + row].low, edge.origin[row].low);
+        }
         flat_.parts.emplace_back(edge.stretch, flat_bits(edge.child),
                                  flat_bits(material_number(edge.material)), flat_bits(edge.levels));
         flat_.parts.resize(flat_.parts.size() + 2);
@@ -229,11 +233,26 @@ std::string lack(const FlatRequest& request) {
     return "";
 }
 
+/// Whether the view shows parts of the root that are too small for places of single precision. Rounding moves rays by
+/// about 1e-7 of the root's size, and that is to stay far below a pixel.
+bool needs_pairs(const View& view, const Box& drawn) {
+    const Camera& camera = view.camera;
+    if (drawn.empty()) return false;
+    const double size = glm::length(drawn.size());
+    const double distance = glm::length(glm::max(glm::max(drawn.min - camera.location, camera.location - drawn.max), 0.0));
+    const double pixel =
+        (camera.orthographic ? camera.width
+                             : 2 * std::tan(camera.angle_deg * std::numbers::pi / 360) * distance) /
+        view.size.width;
+    constexpr double most_pixels = 1e5;
+    return !(size < most_pixels * pixel);
+}
+
 } // namespace
 
 std::uint64_t FlatModel::bytes() const {
     std::uint64_t count = 0;
-    for (const auto* array : {&boxes, &parts, &nodes, &looks, &materials, &triangles})
+    for (const auto* array : {&boxes, &parts, &lows, &nodes, &looks, &materials, &triangles})
         count += array->size() * sizeof(glm::vec4);
     return count + texels.size() * sizeof(float) + sizeof(scene);
 }
@@ -259,6 +278,7 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
     FlatModel flat;
     flat.features.pictured = std::ranges::any_of(request.textures.of_material,
                                                  [](const auto& texture) { return texture != nullptr; });
+    flat.features.paired = needs_pairs(request.view, ground.bounds.node[graph->root]);
     constexpr double far = flat_endless;
     const bool fits =
         Flattener(*graph, flat)

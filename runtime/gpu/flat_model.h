@@ -24,7 +24,7 @@ using glm::vec4;
 /// A model, its view and its light as the kernel reads them (kernel/layout.glsl): arrays without pointers, in
 /// single precision, each part in its own frame. World space has its origin at the camera.
 struct FlatModel {
-    std::vector<glm::vec4> boxes, parts, nodes, looks, materials, triangles;
+    std::vector<glm::vec4> boxes, parts, lows, nodes, looks, materials, triangles;
     std::vector<float> texels;
     std::vector<std::uint32_t> source; ///< by node: that of the prepared graph
     /// The kernel that a model gets knows only what the model has.
@@ -34,6 +34,7 @@ struct FlatModel {
         bool patterned = false; ///< some material has a solid pattern
         bool pictured = false;  ///< some material has a picture
         bool glassy = false;    ///< some material lets light through
+        bool paired = false;    ///< the view shows parts of the root that are too small for single precision
         std::uint32_t kinds = 0; ///< of primitives that rays meet as they are: a bit each
     } features;
     kernel_layout::Scene scene{};

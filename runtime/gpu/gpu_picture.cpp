@@ -21,7 +21,7 @@ struct Job {
     std::array<std::uint32_t, 4> window, picture, sequence;
 };
 
-constexpr std::size_t scene_binding = 7, film_binding = 8;
+constexpr std::size_t scene_binding = 7, film_binding = 9;
 /// Pixels along each side of a group's tile.
 constexpr int group_side = 8;
 constexpr double seconds_a_piece = 0.03;
@@ -42,14 +42,14 @@ GpuPicture::GpuPicture(Gpu& gpu, ImageSize size, const Tile& window, const Sampl
 
 Status GpuPicture::prepare(const FlatModel& model, std::uint32_t frames) {
     const FlatModel::Features& has = model.features;
-    const std::array<std::uint32_t, 9> constants = {
+    const std::array<std::uint32_t, 10> constants = {
         frames,        samples_.aovs, has.stretched, has.even, model.scene.widths.z > 0,
-        has.patterned, has.pictured,  has.glassy,    has.kinds};
+        has.patterned, has.pictured,  has.glassy,    has.kinds,   has.paired};
     Status status = gpu_.load(picture_spirv, film_binding + 1, sizeof(Job), constants, scene_binding);
     const std::span<const std::byte> scene = std::as_bytes(std::span(&model.scene, 1));
     for (const std::span<const std::byte> bytes :
          {bytes_of(model.boxes), bytes_of(model.parts), bytes_of(model.nodes), bytes_of(model.looks),
-          bytes_of(model.materials), bytes_of(model.triangles), bytes_of(model.texels), scene})
+          bytes_of(model.materials), bytes_of(model.triangles), bytes_of(model.texels), scene, bytes_of(model.lows)})
         if (status.ok()) status = gpu_.add_buffer(bytes);
     if (status.ok()) status = gpu_.add_buffer({}, window_.pixels() * sums_a_pixel() * sizeof(glm::vec4));
     return status;

@@ -142,20 +142,19 @@ TEST(GpuAgreement, Scenes) {
     expect_agreement(all, 1e-3);
 }
 
-/// Near the camera single precision shifts what lies in a frame much larger than the view by some thousandths
-/// of a pixel, so that more rays pass edges.
+/// Where the view is small beside the root, places have two floats for each number.
 TEST(GpuAgreement, Zooms) {
     Agreement all{"zooms"};
     std::size_t left = models_a_language();
     for (const char* const zoom : {"1e12", "1e6", "1e3"})
         for (const char* const path : {"ifs/menger_sponge.rifs", "hart/pound_sign.rifs"}) {
-            if (left-- == 0) return expect_agreement(all, 2e-2);
+            if (left-- == 0) return expect_agreement(all, 5e-4);
             StageOptions options = seen_in({160, 120});
             options.view.zoom.zoom = Magnification::parse(zoom);
             Session session(GRAFTAL_SOURCE_DIR "/scenes/" + std::string(path), disk_files());
             all += compare(std::string(path) + " x " + zoom, session, options);
         }
-    expect_agreement(all, 2e-2);
+    expect_agreement(all, 5e-4);
 }
 
 } // namespace

@@ -16,6 +16,9 @@
 // NODE_BALL and NODE_FACTS of the child again, which a ray so has at once.
 #define PART_SIZE 6u
 
+// lows[]: by part what single precision has lost of the first three entries; empty unless PAIRED.
+#define LOW_SIZE 3u
+
 // looks[], by part: its tint, the colour fixed and the share that is open to what lies below it; then of a
 // primitive length_in_turns(), and of a part that stands for two the one before and the last, or NONE.
 #define LOOK_SIZE 2u

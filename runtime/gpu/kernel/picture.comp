@@ -12,6 +12,7 @@
 #define word_of(x) floatBitsToUint(x)
 #define PI 3.14159265358979f
 #define FAR 1e30f
+#define PRECISE precise
 #define min_uint(a, b) min(a, b)
 #define LIMIT_LEVELS 6
 #define LIMIT_RATIO 1.5f
@@ -20,7 +21,8 @@
     vec4 frame_places[MOST_FRAMES]; \
     uvec4 frame_marks[MOST_FRAMES]; \
     vec3 frame_directions[EVEN ? 2 : MOST_FRAMES]; \
-    vec2 frame_sizes[STRETCHED || FAINTS ? MOST_FRAMES : 2];
+    vec2 frame_sizes[STRETCHED || FAINTS ? MOST_FRAMES : 2]; \
+    vec3 frame_lows[PAIRED ? MOST_FRAMES : 2];
 #define MET_MARKS uint met_marks[MOST_FRAMES];
 #define SPACES mat3 spaces[STRETCHED ? MOST_FRAMES : 2];
 #define STEPS uint rays = 0u, steps = 0u, lost = 0u;
@@ -39,6 +41,7 @@ layout(constant_id = 5) const bool PATTERNS = false;  // some material has one
 layout(constant_id = 6) const bool PICTURES = false;  // likewise
 layout(constant_id = 7) const bool GLASS = false;     // some material lets light through
 layout(constant_id = 8) const uint KINDS = 0x1ffu;    // of primitives: a bit each
+layout(constant_id = 9) const bool PAIRED = false; // places of rays have two floats for each number
 const bool MESHES = (KINDS & (1u << KIND_MESH)) != 0u;
 
 layout(local_size_x = 64) in;
@@ -50,10 +53,12 @@ layout(std430, binding = 4) readonly restrict buffer Materials { vec4 all_materi
 layout(std430, binding = 5) readonly restrict buffer Triangles { vec4 all_triangles[]; };
 layout(std430, binding = 6) readonly restrict buffer Texels { float all_texels[]; };
 layout(std140, binding = 7) uniform SceneBuffer { Scene scene; };
-layout(std430, binding = 8) restrict buffer Film { vec4 film[]; };
+layout(std430, binding = 8) readonly restrict buffer Lows { vec4 all_lows[]; };
+layout(std430, binding = 9) restrict buffer Film { vec4 film[]; };
 
 #define boxes(i) all_boxes[i]
 #define parts(i) all_parts[i]
+#define lows(i) all_lows[i]
 #define nodes(i) all_nodes[i]
 #define looks(i) all_looks[i]
 #define materials(i) all_materials[i]

@@ -19,6 +19,7 @@ struct Hit {
 /// A place on the way, and the ray there: origin + (t - base) / unit * direction.
 struct Frame {
     vec3 origin;
+    vec3 low;     // what the origin has lost by rounding, where PAIRED
     float base;
     vec3 direction;
     float unit;
@@ -88,6 +89,7 @@ void keep(int at, Frame frame) {
     frame_marks[at] = uvec4(word_of(frame.unit), frame.steps, marks, uint(frame.waiting));
     if (!EVEN) frame_directions[at] = frame.direction;
     if (STRETCHED || FAINTS) frame_sizes[at] = vec2(frame.scale, frame.margin);
+    if (PAIRED) frame_lows[at] = frame.low;
 }
 
 /// The frame kept there. `direction`: of the ray in the world.
@@ -96,6 +98,8 @@ Frame kept(int at, vec3 direction) {
     const uvec4 marks = frame_marks[at];
     Frame frame;
     frame.origin = xyz_of(place);
+    frame.low = vec3(0.0f);
+    if (PAIRED) frame.low = frame_lows[at];
     frame.base = place.w;
     frame.direction = direction;
     if (!EVEN) frame.direction = frame_directions[at];
@@ -399,6 +403,58 @@ void take_hit(Meeting meeting, INOUT(Hit) hit) {
     hit.normal = length2 > 0.0f ? n * inversesqrt(length2) : vec3(0.0f, 1.0f, 0.0f);
 }
 
+/// a + b as a pair of floats: Knuth, "The Art of Computer Programming", volume 2, section 4.2.2, theorem B.
+void pair_of_sum(vec3 a, vec3 b, OUT(vec3) high, OUT(vec3) low) {
+    PRECISE vec3 sum = a + b;
+    PRECISE vec3 part = sum - a;
+    PRECISE vec3 left = (a - (sum - part)) + (b - part);
+    high = sum;
+    low = left;
+}
+
+/// a b as a pair of floats, by halves (Dekker 1971): not all devices have a product and a sum in one rounding.
+void pair_of_product(vec3 a, vec3 b, OUT(vec3) high, OUT(vec3) low) {
+    const float splitter = 4097.0f;
+    PRECISE vec3 product = a * b;
+    PRECISE vec3 a_split = splitter * a, b_split = splitter * b;
+    PRECISE vec3 a_high = a_split - (a_split - a), b_high = b_split - (b_split - b);
+    PRECISE vec3 a_low = a - a_high, b_low = b - b_high;
+    PRECISE vec3 left = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+    high = product;
+    low = left;
+}
+
+/// Adds a pair to a pair.
+void add_pair(vec3 other, vec3 other_low, INOUT(vec3) high, INOUT(vec3) low) {
+    vec3 sum;
+    vec3 left;
+    pair_of_sum(high, other, sum, left);
+    PRECISE vec3 all = left + (low + other_low);
+    pair_of_sum(sum, all, high, low);
+}
+
+/// The origin of a ray in a part, `along` from that of frame `outer`: errors of rounding would grow with each level.
+void place_by_pairs(uint part, Frame outer, float along, INOUT(Frame) inner) {
+    vec3 at = outer.origin;
+    vec3 at_low = outer.low;
+    vec3 product;
+    vec3 left;
+    pair_of_product(vec3(along), outer.direction, product, left);
+    add_pair(product, left, at, at_low);
+    const uint first = part * PART_SIZE;
+    const vec4 row0 = parts(first), row1 = parts(first + 1u), row2 = parts(first + 2u);
+    const vec4 low0 = lows(part * LOW_SIZE), low1 = lows(part * LOW_SIZE + 1u), low2 = lows(part * LOW_SIZE + 2u);
+    add_pair(-vec3(row0.w, row1.w, row2.w), -vec3(low0.w, low1.w, low2.w), at, at_low);
+    inner.origin = vec3(0.0f);
+    inner.low = vec3(0.0f);
+    for (int k = 0; k < 3; ++k) {
+        const vec3 column = vec3(row0[k], row1[k], row2[k]), column_low = vec3(low0[k], low1[k], low2[k]);
+        pair_of_product(column, vec3(at[k]), product, left);
+        PRECISE vec3 small = left + (column * at_low[k] + column_low * at[k]);
+        add_pair(product, small, inner.origin, inner.low);
+    }
+}
+
 /// The first surface along the ray, or with `any` whether there is one: then nothing else of the hit counts.
 bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(Hit) hit) {
     uint later_entry[MOST_LATER];
@@ -412,6 +468,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
     Meeting meeting;
     Frame frame;
     frame.origin = origin;
+    frame.low = vec3(0.0f);
     frame.base = 0.0f;
     frame.direction = direction;
     frame.unit = 1.0f;
@@ -503,6 +560,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             const vec3 from = frame.origin + to_entry * frame.direction - vec3(row0.w, row1.w, row2.w);
             Frame inner;
             inner.origin = vec3(dot(xyz_of(row0), from), dot(xyz_of(row1), from), dot(xyz_of(row2), from));
+            inner.low = vec3(0.0f);
+            if (PAIRED) place_by_pairs(number, frame, to_entry, inner);
             // As long as before in a similarity, longer in others.
             inner.direction = frame.direction;
             if (!EVEN || is_shape)

@@ -12,6 +12,7 @@
 #include "runtime/gpu/flat_model.h"
 
 #define FORMULA inline
+#define PRECISE
 #define REAL(number) float(number)
 #define OUT(Type) Type&
 #define INOUT(Type) Type&
@@ -21,7 +22,8 @@
     inline thread_local vec4 frame_places[MOST_FRAMES]; \
     inline thread_local uvec4 frame_marks[MOST_FRAMES]; \
     inline thread_local vec3 frame_directions[MOST_FRAMES]; \
-    inline thread_local vec2 frame_sizes[MOST_FRAMES];
+    inline thread_local vec2 frame_sizes[MOST_FRAMES]; \
+    inline thread_local vec3 frame_lows[MOST_FRAMES];
 #define MET_MARKS inline thread_local uint met_marks[MOST_FRAMES];
 #define SPACES inline thread_local mat3 spaces[MOST_FRAMES];
 #define STEPS inline thread_local uint rays = 0, steps = 0, lost = 0;
@@ -39,7 +41,7 @@ inline constexpr float PI = 3.14159265358979f;
 inline constexpr float FAR = 1e30f;
 inline constexpr int MOST_FRAMES = 64, MOST_LATER = 5 * MOST_FRAMES;
 inline thread_local bool STRETCHED = false, EVEN = false, FAINTS = false, PATTERNS = false, PICTURES = false,
-                         GLASS = false, MESHES = false;
+                         GLASS = false, MESHES = false, PAIRED = false;
 inline thread_local std::uint32_t KINDS = 0;
 
 inline thread_local const FlatModel* model = nullptr;
@@ -56,6 +58,7 @@ inline void use(const FlatModel& flat) {
     PATTERNS = has.patterned;
     PICTURES = has.pictured;
     GLASS = has.glassy;
+    PAIRED = has.paired;
     KINDS = has.kinds;
     MESHES = (KINDS & (1u << KIND_MESH)) != 0;
 }
@@ -80,6 +83,9 @@ inline vec4 boxes(uint i) {
 }
 inline vec4 parts(uint i) {
     return model->parts[i];
+}
+inline vec4 lows(uint i) {
+    return model->lows[i];
 }
 inline vec4 nodes(uint i) {
     return model->nodes[i];

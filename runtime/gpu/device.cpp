@@ -107,12 +107,28 @@ class Instance {
 
     GpuInfo info(VkPhysicalDevice device) const {
         const VkPhysicalDeviceProperties facts = properties(device);
-        GpuInfo info{facts.deviceName, facts.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU, 0};
+        GpuInfo info{facts.deviceName, facts.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU, 0,
+                     facts.limits.maxStorageBufferRange, has_atomics_64(device)};
         const VkPhysicalDeviceMemoryProperties heaps = memory(device);
         for (std::uint32_t i = 0; i < heaps.memoryHeapCount; ++i)
             if (heaps.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
                 info.memory_bytes = std::max<std::uint64_t>(info.memory_bytes, heaps.memoryHeaps[i].size);
         return info;
+    }
+
+    bool has_atomics_64(VkPhysicalDevice device) const {
+        VkPhysicalDeviceVulkan12Features of_1_2 = features_1_2();
+        VkPhysicalDeviceFeatures2 features{};
+        features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+        features.pNext = &of_1_2;
+        api.vkGetPhysicalDeviceFeatures2(device, &features);
+        return features.features.shaderInt64 && of_1_2.shaderBufferInt64Atomics;
+    }
+
+    static VkPhysicalDeviceVulkan12Features features_1_2() {
+        VkPhysicalDeviceVulkan12Features features{};
+        features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+        return features;
     }
 
     std::optional<std::uint32_t> queue_family(VkPhysicalDevice device) const {
@@ -185,8 +201,9 @@ struct Gpu::Parts {
     Status open(VkPhysicalDevice physical) {
         const Api& api = instance.api;
         memory = instance.memory(physical);
-        if (instance.info(physical).is_processor) longest_wait_ns *= 10; // others may use it, too
-        most_buffer_bytes = instance.properties(physical).limits.maxStorageBufferRange;
+        const GpuInfo facts = instance.info(physical);
+        if (facts.is_processor) longest_wait_ns *= 10; // others may use it, too
+        most_buffer_bytes = facts.most_buffer_bytes;
         const std::uint32_t family = *instance.queue_family(physical);
         const float priority = 1;
         VkDeviceQueueCreateInfo queues{};
@@ -198,6 +215,11 @@ struct Gpu::Parts {
         info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
         info.queueCreateInfoCount = 1;
         info.pQueueCreateInfos = &queues;
+        VkPhysicalDeviceVulkan12Features of_1_2 = vulkan::Instance::features_1_2();
+        VkPhysicalDeviceFeatures features{};
+        features.shaderInt64 = of_1_2.shaderBufferInt64Atomics = facts.atomics_64;
+        info.pNext = &of_1_2;
+        info.pEnabledFeatures = &features;
         if (const VkResult result = api.vkCreateDevice(physical, &info, nullptr, &device);
             result != VK_SUCCESS)
             return failure("opening the device", result);
@@ -306,6 +328,10 @@ struct Gpu::Parts {
         instance.api.vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                                           VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0,
                                           1, &barrier, 0, nullptr, 0, nullptr);
+    }
+
+    Status clear(Buffer& buffer) {
+        return submit([&] { instance.api.vkCmdFillBuffer(commands, buffer.buffer, 0, VK_WHOLE_SIZE, 0); });
     }
 
     /// Copies between the stage and a place in a buffer.
@@ -437,10 +463,7 @@ Status Gpu::add_buffer(std::span<const std::byte> bytes, std::size_t size) {
                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     if (Status status = parts.make_buffer(whole, usage, false, buffer); !status.ok()) return status;
     if (bytes.size() < whole)
-        if (Status status = parts.submit(
-                [&] { api.vkCmdFillBuffer(parts.commands, buffer.buffer, 0, VK_WHOLE_SIZE, 0); });
-            !status.ok())
-            return status;
+        if (Status status = parts.clear(buffer); !status.ok()) return status;
     for (std::size_t at = 0; at < bytes.size(); at += Parts::stage_bytes) {
         const std::size_t piece = std::min<std::size_t>(bytes.size() - at, Parts::stage_bytes);
         std::memcpy(parts.staged, bytes.data() + at, piece);
@@ -458,11 +481,16 @@ Status Gpu::add_buffer(std::span<const std::byte> bytes, std::size_t size) {
     return {};
 }
 
-Status Gpu::read(std::size_t binding, std::span<std::byte> bytes) {
+Status Gpu::clear(std::size_t binding) {
+    return parts_->clear(parts_->buffers[binding]);
+}
+
+Status Gpu::read(std::size_t binding, std::span<std::byte> bytes, std::size_t from) {
     Parts& parts = *parts_;
     for (std::size_t at = 0; at < bytes.size(); at += Parts::stage_bytes) {
         const std::size_t piece = std::min<std::size_t>(bytes.size() - at, Parts::stage_bytes);
-        if (Status status = parts.copy(parts.buffers[binding], at, piece, false); !status.ok()) return status;
+        if (Status status = parts.copy(parts.buffers[binding], from + at, piece, false); !status.ok())
+            return status;
         std::memcpy(bytes.data() + at, parts.staged, piece);
     }
     return {};

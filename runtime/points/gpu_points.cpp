@@ -10,6 +10,11 @@
 
 namespace graftal {
 
+namespace points_kernel {
+using glm::uvec4;
+#include "runtime/points/kernel/job.glsl"
+} // namespace points_kernel
+
 namespace {
 
 #include "runtime/points/points_64_spirv.h"
@@ -17,10 +22,7 @@ namespace {
 
 enum Binding : std::uint8_t { choices, moves, links, states, colours, walkers, cells, totals, bindings };
 
-/// What a job asks for, as the kernel numbers it.
-constexpr std::uint32_t goes_on = 0, begins = 1, sweeps = 2;
-
-constexpr std::uint32_t group_size = 128, cells_of_thread = 128;
+constexpr std::uint32_t group_size = GROUP_SIZE, cells_of_thread = CELLS_OF_THREAD;
 constexpr std::size_t bytes_of_walker = 64;
 constexpr double seconds_a_piece = 0.04;
 /// Software devices end loops after some ten thousand rounds.
@@ -56,11 +58,9 @@ double room_of_cell(std::uint32_t channels) {
 } // namespace
 
 /// The kernel's.
-struct GpuPoints::Job {
-    std::array<std::uint32_t, 4> window{}, work{}, start{}, more{};
-
-    std::size_t cells() const { return std::size_t{window[0]} * window[3]; }
-    std::size_t first_cell() const { return std::size_t{window[0]} * window[2]; }
+struct GpuPoints::Job : points_kernel::Job {
+    std::size_t cells() const { return std::size_t{window.x} * window.w; }
+    std::size_t first_cell() const { return std::size_t{window.x} * window.z; }
 };
 
 GpuPoints::Colours GpuPoints::colours_of(FlatGame& game) {
@@ -106,8 +106,7 @@ Status GpuPoints::load(const FlatGame& game, const Work& work, std::uint32_t wal
                                                     game.climbs,
                                                     game.leaves,
                                                     game.wide};
-    const bool at_once = gpu_.info().atomics_64;
-    Status status = gpu_.load(at_once ? std::span<const std::uint32_t>(points_64_spirv) : points_spirv,
+    Status status = gpu_.load(at_once_ ? std::span<const std::uint32_t>(points_64_spirv) : points_spirv,
                               bindings, sizeof(Job), constants);
     for (const std::span<const std::byte> bytes :
          {bytes_of(game.choices), bytes_of(game.moves), bytes_of(game.links), bytes_of(game.states),
@@ -130,7 +129,7 @@ Status GpuPoints::run(const Job& job, std::uint32_t groups, double& seconds) {
 }
 
 Status GpuPoints::sweep(Job job, std::uint64_t& most, std::uint64_t& sum) {
-    job.work[3] = sweeps;
+    job.work[3] = JOB_SWEEPS;
     const std::uint32_t groups = groups_for((job.cells() + cells_of_thread - 1) / cells_of_thread);
     double seconds = 0;
     Status status = run(job, groups, seconds);
@@ -184,7 +183,7 @@ Status GpuPoints::play(Accumulation& picture, const Work& work, Job job) {
     auto piece = static_cast<std::uint64_t>(std::max(room / job.work[0], 1.0));
     piece = std::min<std::uint64_t>(piece, 256);
     std::uint64_t inside = 0, made = 0; // since the last flush
-    job.work[3] = begins;
+    job.work[3] = JOB_BEGINS;
     for (std::uint64_t done = 0; done <= moves_of_each;) {
         const double whole = static_cast<double>(moves_of_each + 1);
         if (!work.goes_on(share_ + static_cast<double>(done) / whole * static_cast<double>(job.window[3]) /
@@ -201,7 +200,7 @@ Status GpuPoints::play(Accumulation& picture, const Work& work, Job job) {
             inside += totals_[group].x;
         made += number * job.work[0] + job.work[2];
         done += number;
-        job.work[3] = goes_on;
+        job.work[3] = JOB_GOES_ON;
         std::uint64_t most = 0, sum = 0;
         if (Status status = sweep(job, most, sum); !status.ok()) return status;
         if (sum != inside) return Status::failure("GPU: a pixel has more points than its sums hold");

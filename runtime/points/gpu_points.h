@@ -24,8 +24,9 @@ class GpuPoints {
         std::function<bool(double share)> goes_on;
     };
 
-    /// The device outlives this.
-    explicit GpuPoints(Gpu& gpu) : gpu_(gpu) {}
+    /// The device outlives this. `at_once`: pairs of sums are added by one operation, which requires
+    /// GpuInfo::atomics_64; their sums are the same.
+    GpuPoints(Gpu& gpu, bool at_once) : gpu_(gpu), at_once_(at_once) {}
 
     /// Adds all points of the game that the picture shows.
     Status add_to(Accumulation& picture, FlatGame game, const Work& work);
@@ -51,6 +52,7 @@ class GpuPoints {
     Status run(const Job& job, std::uint32_t groups, double& seconds);
 
     Gpu& gpu_;
+    bool at_once_;
     Colours colours_;
     std::vector<glm::uvec4> totals_; ///< by group
     double seconds_ = 0;

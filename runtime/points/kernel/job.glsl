@@ -1,0 +1,15 @@
+// What the host asks of the kernel of points.
+
+struct Job {
+    uvec4 window; // width, height; first row and number of rows that are counted
+    uvec4 work;   // walkers; points of each; of them those with one more; what to do
+    uvec4 start;  // first slot and slots of the table of beginnings; moves to settle; index of the last colour
+    uvec4 more;   // seed; cells; levels of a colour
+};
+
+#define JOB_GOES_ON 0u
+#define JOB_BEGINS 1u // and goes on
+#define JOB_SWEEPS 2u // the cells, in place of points
+
+#define GROUP_SIZE 128u
+#define CELLS_OF_THREAD 128u

@@ -1,0 +1,213 @@
+// Points by a device against those by the processors: as near as those of another seed.
+
+#include "runtime/points/gpu_points.h"
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/chaos/games.h"
+#include "tests/unit/points/points_kernel.h"
+
+namespace graftal {
+namespace {
+
+constexpr ImageSize size{48, 36};
+constexpr std::uint64_t many = 400'000;
+
+Camera camera_at(Vec3 middle, double width) {
+    Camera camera;
+    camera.orthographic = true;
+    camera.location = middle + Vec3(0, 0, 1);
+    camera.width = width;
+    return camera;
+}
+
+std::unique_ptr<Accumulation> by_processors(const PointSource& source, const Camera& camera,
+                                            std::uint64_t points = many) {
+    auto picture = std::make_unique<Accumulation>(size);
+    const PointProjection projection(camera, size);
+    PointWork work;
+    work.points = points;
+    work.threads = 1;
+    EXPECT_TRUE(take_points(source, work, [&](int, std::span<const ChaosPoint> some) {
+        for (const ChaosPoint& point : some)
+            if (const auto pixel = projection.pixel_of(point.place)) picture->add(*pixel, point.rgb);
+    }));
+    return picture;
+}
+
+std::unique_ptr<Accumulation> by_gpu(const PointSource& source, const Camera& camera,
+                                     std::uint64_t points = many, bool at_once = true) {
+    auto picture = std::make_unique<Accumulation>(size);
+    const PointProjection projection(camera, size);
+    std::string why;
+    std::optional<FlatGame> game = source.flat(projection.picture_from_world(), {}, why);
+    EXPECT_TRUE(game) << why;
+    Status status;
+    const std::unique_ptr<Gpu> gpu = Gpu::open(0, status);
+    EXPECT_TRUE(gpu) << status.message();
+    if (!gpu || !game) return picture;
+    GpuPoints device(*gpu, at_once && gpu->info().atomics_64);
+    status = device.add_to(
+        *picture, *game,
+        {.points = points, .seed = 7, .perspective = projection.perspective(), .goes_on = [](double) {
+             return true;
+         }});
+    EXPECT_TRUE(status.ok()) << status.message();
+    return picture;
+}
+
+/// By the kernel's text as C++.
+std::vector<std::uint32_t> by_text(const FlatGame& game, std::uint32_t points) {
+    namespace text = points_kernel;
+    text::game = &game;
+    text::FLAT = game.flat;
+    text::PERSPECTIVE = false;
+    text::CHANNELS = 0;
+    text::CLIMBS = game.climbs;
+    text::LEAVES = game.leaves;
+    text::WIDE = game.wide;
+    const auto last = static_cast<std::uint32_t>(game.colours.size() - 1);
+    text::words.assign(static_cast<std::size_t>(size.width) * size.height, 0);
+    text::job.window = {size.width, size.height, 0, size.height};
+    text::job.start = {game.start.first, game.start.count, game.settling, last};
+    text::job.more = {7, 0, text::words.size(), 1};
+    constexpr std::uint32_t walkers = 128; // as few points have
+    text::job.work = {walkers, points / walkers, points % walkers, JOB_BEGINS};
+    for (std::uint32_t i = 0; i < walkers; ++i) {
+        text::Walker walker = text::new_walker(i);
+        text::played(i, walker);
+    }
+    return text::words;
+}
+
+std::uint64_t points_in(const Accumulation& picture) {
+    std::uint64_t sum = 0;
+    for (const Accumulation::Cell& cell : picture.cells())
+        sum += cell.count;
+    return sum;
+}
+
+/// How far pictures of as many points are from each other.
+struct Distance {
+    double counts = 0;  ///< a pixel, in what chance would give if points were independent: 1
+    double colours = 0; ///< of means, a point
+};
+
+Distance distance(const Accumulation& a, const Accumulation& b) {
+    Distance found;
+    double pixels = 0, points = 0;
+    for (std::size_t i = 0; i < a.cells().size(); ++i) {
+        const Accumulation::Cell &one = a.cells()[i], &other = b.cells()[i];
+        const auto here = static_cast<double>(one.count), there = static_cast<double>(other.count);
+        if (here + there < 20) continue;
+        ++pixels;
+        found.counts += (here - there) * (here - there) / (here + there);
+        if (one.count == 0 || other.count == 0) continue;
+        const Rgb apart = a.mean_colour(one) - b.mean_colour(other);
+        points += here;
+        found.colours += here * (std::abs(apart.r) + std::abs(apart.g) + std::abs(apart.b));
+    }
+    EXPECT_GT(pixels, 50);
+    found.counts /= pixels;
+    found.colours /= points;
+    return found;
+}
+
+void expect_same_measure(const std::string& name, const std::string& text, const Camera& camera) {
+    const ChaosGame game = testing::played(name, text).game();
+    const auto one = by_processors(ChaosSource(game, 1), camera),
+               other = by_processors(ChaosSource(game, 2), camera),
+               gpu = by_gpu(ChaosSource(game, 1), camera);
+    const Distance by_chance = distance(*one, *other), found = distance(*one, *gpu);
+    EXPECT_LT(found.counts, 1.15 * by_chance.counts + 0.1) << text;
+    EXPECT_GT(found.counts, 0.85 * by_chance.counts - 0.1) << text;
+    EXPECT_LT(found.colours, 1.2 * by_chance.colours + 1e-3) << text;
+}
+
+const std::string fern = "rifs fern { codes 2d {\n stem: 0 0 0 .16 0 0 .01 tint rgb <.2, .1, 0> 0.9\n"
+                         "frond: .85 .04 -.04 .85 0 1.6 .85 tint rgb <0, .4, 0> 0.06\n"
+                         "left: .2 -.26 .23 .22 0 1.6 .07 tint rgb <1, .4, 0> 0.7\n"
+                         "right: -.15 .28 .26 .24 0 .44 .07 tint rgb <.1, .4, 1> 0.7\n } }";
+
+const std::string quadrants = "rifs p { map a { scale 1/2 tint rgb <1, 0, 0> 1/2 }\n"
+                              "map b { scale 1/2 translate <1/2, 0, 1/2> tint rgb <0, 0, 1> 1/2 }\n"
+                              "map c { scale 1/2 translate <0, 1/2, 1/2> }\n"
+                              "map d { scale 1/2 translate <1/2, 1/2, 0> }\n follow all except self }";
+
+TEST(GpuPoints, HaveTheMeasureOfTheProcessors) {
+    expect_same_measure("a.rifs", fern, camera_at({0, 5, 0}, 14));
+    expect_same_measure("a.rifs", quadrants, camera_at({0.5, 0.5, 0}, 1.4));
+    Camera near;
+    near.location = {0.5, 0.4, 2};
+    expect_same_measure("a.rifs", quadrants, near);
+}
+
+/// A core that points leave from some states only, and climb from.
+TEST(GpuPoints, ClimbFromCores) {
+    expect_same_measure(
+        "a.inst",
+        "canonical object a { b scale: 0.5 chance: 1\n a scale: 0.5 translate: 1,0,0 chance: 2 }\n"
+        "canonical object b { a scale: 0.5 translate: 0,1,0 chance: 1\n"
+        " b scale: 0.4 translate: 1,1,0 chance: 3 tint: 1,0,0,0.5 }\n"
+        "object top { a chance: 1\n a scale: 0.5 translate: 2,0,0 chance: 1 }",
+        camera_at({1.4, 0.97, 0}, 4.1));
+}
+
+TEST(GpuPoints, AreAsManyAsWereAskedFor) {
+    const ChaosGame game = testing::played("a.rifs", fern).game();
+    for (const std::uint64_t points : {1ull, 999ull, 128ull * 1024, 300'001ull})
+        EXPECT_EQ(points_in(*by_gpu(ChaosSource(game, 1), camera_at({0, 5, 0}, 20), points)), points);
+}
+
+/// Twice, and where two sums are added one after the other.
+TEST(GpuPoints, AreTheSameEachTime) {
+    const ChaosGame game = testing::played("a.rifs", fern).game();
+    const auto once = by_gpu(ChaosSource(game, 1), camera_at({0, 5, 0}, 14));
+    for (const bool at_once : {true, false}) {
+        const auto again = by_gpu(ChaosSource(game, 1), camera_at({0, 5, 0}, 14), many, at_once);
+        for (std::size_t i = 0; i < once->cells().size(); ++i) {
+            const Accumulation::Cell &a = once->cells()[i], &b = again->cells()[i];
+            ASSERT_TRUE(a.count == b.count && std::ranges::equal(a.rgb, b.rgb)) << i;
+        }
+    }
+}
+
+/// Devices round a little otherwise, so that some points fall into the next pixel.
+TEST(GpuPoints, AreThoseOfTheKernelsText) {
+    const ChaosGame game =
+        testing::played("a.rifs", "rifs p { map a { scale 1/2 } map b { scale 1/2 translate <1/2, 0> }\n"
+                                  "map c { scale 1/2 translate <0, 1/2> } map d { scale 1/2 translate "
+                                  "<1/2, 1/2> } follow all except self }")
+            .game();
+    const ChaosSource source(game, 1);
+    const Camera camera = camera_at({0.51, 0.52, 0}, 1.43);
+    std::string why;
+    const std::optional<FlatGame> flat =
+        source.flat(PointProjection(camera, size).picture_from_world(), {}, why);
+    ASSERT_TRUE(flat) << why;
+    constexpr std::uint32_t points = 50'001;
+    const std::vector<std::uint32_t> text = by_text(*flat, points);
+    const auto device = by_gpu(source, camera, points);
+    double apart = 0;
+    for (std::size_t i = 0; i < text.size(); ++i)
+        apart += std::abs(static_cast<double>(text[i]) - static_cast<double>(device->cells()[i].count));
+    EXPECT_LT(apart, 20);
+}
+
+TEST(GpuPoints, SinglePrecisionHasItsLimit) {
+    const ChaosGame game = testing::played("a.rifs", quadrants).game();
+    const ChaosSource source(game, 1);
+    const auto is_sharp = [&](double width) {
+        return is_sharp_in_single(source, PointProjection(camera_at({0.3, 0.3, 0}, width), size));
+    };
+    EXPECT_TRUE(is_sharp(1));
+    EXPECT_TRUE(is_sharp(1e-3));
+    EXPECT_FALSE(is_sharp(1e-7));
+}
+
+} // namespace
+} // namespace graftal

@@ -132,7 +132,7 @@ class Canvas {
         const std::unique_ptr<Gpu> gpu = Gpu::open(options_.device.value_or(0), status);
         if (!gpu) return status;
         auto counted = std::make_unique<Accumulation>(size_);
-        GpuPoints points(*gpu, gpu->info().atomics_64);
+        GpuPoints points(*gpu);
         status = points.add_to(*counted, *game,
                                {.points = work.points,
                                 .seed = options_.compile.lower.seed.value_or(0),

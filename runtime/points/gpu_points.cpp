@@ -20,7 +20,18 @@ namespace {
 #include "runtime/points/points_64_spirv.h"
 #include "runtime/points/points_spirv.h"
 
-enum Binding : std::uint8_t { choices, moves, links, states, colours, walkers, cells, totals, bindings };
+enum Binding : std::uint8_t {
+    choices,
+    moves,
+    links,
+    states,
+    colours,
+    walkers,
+    cells,
+    totals,
+    packed,
+    bindings
+};
 
 constexpr std::uint32_t group_size = GROUP_SIZE, cells_of_thread = CELLS_OF_THREAD;
 constexpr std::size_t bytes_of_walker = 64;
@@ -28,8 +39,8 @@ constexpr double seconds_a_piece = 0.04;
 /// Software devices end loops after some ten thousand rounds.
 constexpr std::uint64_t most_moves_by_software = 1u << 12;
 constexpr std::uint64_t most_points_a_piece = 1u << 31;
-/// Levels of a colour's channel. A sum of 32 bits holds 4 million of them.
-constexpr std::uint32_t levels = 1023;
+/// A pixel's share of all points from which on more of them may come while a cell is unpacked than it holds.
+constexpr double most_packed_share = 1.0 / 1024;
 
 template<typename Value> std::span<const std::byte> bytes_of(const std::vector<Value>& values) {
     return std::as_bytes(std::span(values));
@@ -50,9 +61,14 @@ std::uint32_t words_of_cell(std::uint32_t channels) {
     return channels == 0 ? 1 : channels == 1 ? 2 : 4;
 }
 
+/// Levels of a colour's channel. Sums of 32 bits hold 4 million of them, or 16.
+std::uint32_t levels_of(std::uint32_t channels) {
+    return channels == 1 ? 1023 : 255;
+}
+
 /// How many points a cell has room for.
 double room_of_cell(std::uint32_t channels) {
-    return channels == 0 ? 0x1p32 - 1 : std::floor((0x1p32 - 1) / levels);
+    return channels == 0 ? 0x1p32 - 1 : std::floor((0x1p32 - 1) / levels_of(channels));
 }
 
 } // namespace
@@ -106,17 +122,19 @@ Status GpuPoints::load(const FlatGame& game, const Work& work, std::uint32_t wal
                                                     game.climbs,
                                                     game.leaves,
                                                     game.wide};
-    Status status = gpu_.load(at_once_ ? std::span<const std::uint32_t>(points_64_spirv) : points_spirv,
-                              bindings, sizeof(Job), constants);
+    Status status =
+        gpu_.load(sums_ != Sums::apart ? std::span<const std::uint32_t>(points_64_spirv) : points_spirv,
+                  bindings, sizeof(Job), constants);
     for (const std::span<const std::byte> bytes :
          {bytes_of(game.choices), bytes_of(game.moves), bytes_of(game.links), bytes_of(game.states),
           bytes_of(game.colours)})
         if (status.ok()) status = gpu_.add_buffer(bytes);
     totals_.resize(std::max<std::size_t>(groups_for(walkers_of_it),
                                          groups_for((cells_of_it + cells_of_thread - 1) / cells_of_thread)));
-    for (const std::size_t size : {walkers_of_it * bytes_of_walker,
-                                   cells_of_it * words_of_cell(colours_.channels) * sizeof(std::uint32_t),
-                                   totals_.size() * sizeof(glm::uvec4)})
+    for (const std::size_t size :
+         {walkers_of_it * bytes_of_walker,
+          cells_of_it * words_of_cell(colours_.channels) * sizeof(std::uint32_t),
+          totals_.size() * sizeof(glm::uvec4), packs_ ? cells_of_it * sizeof(std::uint64_t) : 0})
         if (status.ok()) status = gpu_.add_buffer({}, size);
     return status;
 }
@@ -129,7 +147,7 @@ Status GpuPoints::run(const Job& job, std::uint32_t groups, double& seconds) {
 }
 
 Status GpuPoints::sweep(Job job, std::uint64_t& most, std::uint64_t& sum) {
-    job.work[3] = JOB_SWEEPS;
+    job.work.w = (job.work.w & JOB_PACKS) | JOB_SWEEPS;
     const std::uint32_t groups = groups_for((job.cells() + cells_of_thread - 1) / cells_of_thread);
     double seconds = 0;
     Status status = run(job, groups, seconds);
@@ -142,7 +160,7 @@ Status GpuPoints::sweep(Job job, std::uint64_t& most, std::uint64_t& sum) {
 }
 
 Status GpuPoints::flush(Accumulation& picture, const Job& job, std::uint64_t points) {
-    const std::uint32_t words = words_of_cell(colours_.channels);
+    const std::uint32_t words = words_of_cell(colours_.channels), levels = levels_of(colours_.channels);
     constexpr std::size_t cells_at_once = 1u << 20;
     std::vector<std::uint32_t> some(cells_at_once * words);
     std::uint64_t sum = 0;
@@ -200,13 +218,14 @@ Status GpuPoints::play(Accumulation& picture, const Work& work, Job job) {
             inside += totals_[group].x;
         made += number * job.work[0] + job.work[2];
         done += number;
-        job.work[3] = JOB_GOES_ON;
         std::uint64_t most = 0, sum = 0;
         if (Status status = sweep(job, most, sum); !status.ok()) return status;
         if (sum != inside) return Status::failure("GPU: a pixel has more points than its sums hold");
         if (last) break;
+        job.work.w = 0;
         // The fullest cell grows by as much again for as many points, and by chance a little more.
         const double growth = 1.5 * static_cast<double>(most + 64) / static_cast<double>(made);
+        if (packs_ && growth <= most_packed_share) job.work.w = JOB_PACKS;
         const double affordable = seconds_a_piece / std::max(seconds, 1e-6) * static_cast<double>(number);
         piece = static_cast<std::uint64_t>(std::clamp(
             std::min({affordable, 8.0 * static_cast<double>(number), room / 2 / growth / job.work[0]}), 1.0,
@@ -237,6 +256,7 @@ bool is_sharp_in_single(const PointSource& source, const PointProjection& projec
 
 Status GpuPoints::add_to(Accumulation& picture, FlatGame game, const Work& work) {
     colours_ = colours_of(game);
+    packs_ = sums_ == Sums::packed && colours_.channels == 3;
     const ImageSize size = picture.size();
     const auto width = static_cast<std::uint32_t>(size.width),
                height = static_cast<std::uint32_t>(size.height);
@@ -254,7 +274,7 @@ Status GpuPoints::add_to(Accumulation& picture, FlatGame game, const Work& work)
     for (std::uint32_t row = 0; row < height; row += rows) {
         job.window = {width, height, row, std::min(rows, height - row)};
         job.more = {static_cast<std::uint32_t>(work.seed), static_cast<std::uint32_t>(work.seed >> 32),
-                    static_cast<std::uint32_t>(job.cells()), levels};
+                    static_cast<std::uint32_t>(job.cells()), levels_of(colours_.channels)};
         share_ = static_cast<double>(row) / height;
         if (Status status = play(picture, work, job); !status.ok()) return status;
     }

@@ -24,9 +24,15 @@ class GpuPoints {
         std::function<bool(double share)> goes_on;
     };
 
-    /// The device outlives this. `at_once`: pairs of sums are added by one operation, which requires
-    /// GpuInfo::atomics_64; their sums are the same.
-    GpuPoints(Gpu& gpu, bool at_once) : gpu_(gpu), at_once_(at_once) {}
+    /// How the sums of a pixel grow, which are the same in the end.
+    enum class Sums {
+        apart,  ///< each by an operation of its own
+        pairs,  ///< two by one: requires GpuInfo::atomics_64, as the next does
+        packed, ///< all by one, where pixels are not too full
+    };
+    /// The device outlives this.
+    GpuPoints(Gpu& gpu, Sums sums) : gpu_(gpu), sums_(sums) {}
+    explicit GpuPoints(Gpu& gpu) : GpuPoints(gpu, gpu.info().atomics_64 ? Sums::packed : Sums::apart) {}
 
     /// Adds all points of the game that the picture shows.
     Status add_to(Accumulation& picture, FlatGame game, const Work& work);
@@ -52,7 +58,8 @@ class GpuPoints {
     Status run(const Job& job, std::uint32_t groups, double& seconds);
 
     Gpu& gpu_;
-    bool at_once_;
+    Sums sums_;
+    bool packs_ = false;
     Colours colours_;
     std::vector<glm::uvec4> totals_; ///< by group
     double seconds_ = 0;

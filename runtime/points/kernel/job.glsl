@@ -7,9 +7,10 @@ struct Job {
     uvec4 more;   // seed; cells; levels of a colour
 };
 
-#define JOB_GOES_ON 0u
-#define JOB_BEGINS 1u // and goes on
+// What to do: bits.
+#define JOB_BEGINS 1u // walkers are new
 #define JOB_SWEEPS 2u // the cells, in place of points
+#define JOB_PACKS 4u  // points go to cells of their own first, three channels and the number by one addition
 
 #define GROUP_SIZE 128u
 #define CELLS_OF_THREAD 128u

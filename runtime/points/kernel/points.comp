@@ -33,23 +33,48 @@ layout(std430, binding = 4) readonly restrict buffer Colours { vec4 all_colours[
 // with three channels a second pair of sums.
 layout(std430, binding = 6) buffer Words { uint words[]; };
 
+#include "runtime/points/kernel/job.glsl"
+layout(push_constant) uniform Push { Job job; };
+
 // A pair may be added at once: no sum flows over before its points do.
 #ifdef ATOMICS_64
 layout(std430, binding = 6) buffer Pairs { uint64_t pairs[]; };
+layout(std430, binding = 8) restrict buffer Packed { uint64_t packed_cells[]; };
+#define PACKS ((job.work.w & JOB_PACKS) != 0u)
+
 void add_pair(uint pair, uint low, uint high) {
     atomicAdd(pairs[pair], packUint2x32(uvec2(low, high)));
 }
 #else
+#define PACKS false
+
 void add_pair(uint pair, uint low, uint high) {
     atomicAdd(words[2u * pair], low);
     atomicAdd(words[2u * pair + 1u], high);
 }
 #endif
 
-#include "runtime/points/kernel/job.glsl"
-layout(push_constant) uniform Push { Job job; };
+void add_packed(uint cell, uvec2 point);
 
 #include "runtime/points/kernel/points.glsl"
+
+#ifdef ATOMICS_64
+/// Takes the packed sums of a cell to its pairs; their number of points.
+uint unpack_cell(uint cell) {
+    const uvec4 sums = unpacked(unpackUint2x32(atomicExchange(packed_cells[cell], uint64_t(0))));
+    add_pair(2u * cell, sums.x, sums.y);
+    add_pair(2u * cell + 1u, sums.z, sums.w);
+    return sums.y;
+}
+
+/// Of 256 points the last one unpacks its cell. It holds 1023, so that other points have time to come meanwhile.
+void add_packed(uint cell, uvec2 point) {
+    const uint before = unpackUint2x32(atomicAdd(packed_cells[cell], packUint2x32(point))).y >> 22;
+    if ((before & 255u) == 255u) unpack_cell(cell);
+}
+#else
+void add_packed(uint cell, uvec2 point) {}
+#endif
 
 layout(std430, binding = 5) restrict buffer Walkers { Walker walkers[]; };
 
@@ -66,7 +91,10 @@ void sweep() {
     for (uint k = 0u; k < CELLS_OF_THREAD; ++k) {
         const uint cell = first + k * GROUP_SIZE;
         if (cell >= job.more.z) break;
-        const uint number = CHANNELS == 0u ? words[cell] : CHANNELS == 1u ? words[2u * cell + 1u] : words[4u * cell + 1u];
+        uint number = CHANNELS == 0u ? words[cell] : CHANNELS == 1u ? words[2u * cell + 1u] : words[4u * cell + 1u];
+#ifdef ATOMICS_64
+        if (PACKS && packed_cells[cell] != uint64_t(0)) number += unpack_cell(cell);
+#endif
         most = max(most, number);
         low += number & 0xffffu;
         high += number >> 16;
@@ -80,11 +108,11 @@ void main() {
     if (gl_LocalInvocationIndex < 3u) of_group[gl_LocalInvocationIndex] = 0u;
     barrier();
     const uint i = gl_GlobalInvocationID.x;
-    if (job.work.w == JOB_SWEEPS)
+    if ((job.work.w & JOB_SWEEPS) != 0u)
         sweep();
     else if (i < job.work.x) {
         Walker walker;
-        if (job.work.w == JOB_BEGINS)
+        if ((job.work.w & JOB_BEGINS) != 0u)
             walker = new_walker(i);
         else
             walker = walkers[i];

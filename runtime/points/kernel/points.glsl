@@ -94,6 +94,16 @@ uint level_of(float value, uint chances) {
     return uint(float(job.more.w) * clamp(value, 0.0f, 1.0f) + float(chances & 1023u) * (1.0f / 1024.0f));
 }
 
+/// A point in 64 bits: its number in ten, then 18 each for red, green and blue. The sums of 1023 points have room.
+uvec2 packed(uint red, uint green, uint blue) {
+    return uvec2(blue | (green << 18), (red << 4) | (1u << 22));
+}
+
+/// The sums of red, points, green and blue.
+uvec4 unpacked(uvec2 sums) {
+    return uvec4((sums.y >> 4) & 0x3ffffu, sums.y >> 22, ((sums.y & 15u) << 14) | (sums.x >> 18), sums.x & 0x3ffffu);
+}
+
 /// Counts a point; 1 if it is in the window.
 uint counted(Point point, uint material, INOUT(uvec4) random) {
     const vec2 size = vec2(float(job.window.x), float(job.window.y));
@@ -117,9 +127,14 @@ uint counted(Point point, uint material, INOUT(uvec4) random) {
         add_pair(cell, red, 1u);
         return 1u;
     }
+    const uint green = level_of(point.paint.y + point.paint.w * behind.y, chances >> 10),
+               blue = level_of(point.paint.z + point.paint.w * behind.z, chances >> 20);
+    if (PACKS) {
+        add_packed(cell, packed(red, green, blue));
+        return 1u;
+    }
     add_pair(2u * cell, red, 1u);
-    add_pair(2u * cell + 1u, level_of(point.paint.y + point.paint.w * behind.y, chances >> 10),
-             level_of(point.paint.z + point.paint.w * behind.z, chances >> 20));
+    add_pair(2u * cell + 1u, green, blue);
     return 1u;
 }
 
@@ -145,7 +160,7 @@ uint played(uint number, INOUT(Walker) walker) {
     Point point;
     point.place = vec3(walker.place.x, walker.place.y, walker.place.z);
     point.paint = walker.paint;
-    if (job.work.w == JOB_BEGINS)
+    if ((job.work.w & JOB_BEGINS) != 0u)
         for (uint i = 0u; i <= job.start.z; ++i)
             wander(point, at, random);
     uint inside = 0u;

@@ -14,7 +14,7 @@
 namespace graftal {
 namespace {
 
-constexpr ImageSize size{48, 36};
+constexpr ImageSize small{48, 36};
 constexpr std::uint64_t many = 400'000;
 
 Camera camera_at(Vec3 middle, double width) {
@@ -27,8 +27,8 @@ Camera camera_at(Vec3 middle, double width) {
 
 std::unique_ptr<Accumulation> by_processors(const PointSource& source, const Camera& camera,
                                             std::uint64_t points = many) {
-    auto picture = std::make_unique<Accumulation>(size);
-    const PointProjection projection(camera, size);
+    auto picture = std::make_unique<Accumulation>(small);
+    const PointProjection projection(camera, small);
     PointWork work;
     work.points = points;
     work.threads = 1;
@@ -40,7 +40,8 @@ std::unique_ptr<Accumulation> by_processors(const PointSource& source, const Cam
 }
 
 std::unique_ptr<Accumulation> by_gpu(const PointSource& source, const Camera& camera,
-                                     std::uint64_t points = many, bool at_once = true) {
+                                     std::uint64_t points = many,
+                                     GpuPoints::Sums sums = GpuPoints::Sums::packed, ImageSize size = small) {
     auto picture = std::make_unique<Accumulation>(size);
     const PointProjection projection(camera, size);
     std::string why;
@@ -50,7 +51,7 @@ std::unique_ptr<Accumulation> by_gpu(const PointSource& source, const Camera& ca
     const std::unique_ptr<Gpu> gpu = Gpu::open(0, status);
     EXPECT_TRUE(gpu) << status.message();
     if (!gpu || !game) return picture;
-    GpuPoints device(*gpu, at_once && gpu->info().atomics_64);
+    GpuPoints device(*gpu, gpu->info().atomics_64 ? sums : GpuPoints::Sums::apart);
     status = device.add_to(
         *picture, *game,
         {.points = points, .seed = 7, .perspective = projection.perspective(), .goes_on = [](double) {
@@ -71,8 +72,8 @@ std::vector<std::uint32_t> by_text(const FlatGame& game, std::uint32_t points) {
     text::LEAVES = game.leaves;
     text::WIDE = game.wide;
     const auto last = static_cast<std::uint32_t>(game.colours.size() - 1);
-    text::words.assign(static_cast<std::size_t>(size.width) * size.height, 0);
-    text::job.window = {size.width, size.height, 0, size.height};
+    text::words.assign(static_cast<std::size_t>(small.width) * small.height, 0);
+    text::job.window = {small.width, small.height, 0, small.height};
     text::job.start = {game.start.first, game.start.count, game.settling, last};
     text::job.more = {7, 0, text::words.size(), 1};
     constexpr std::uint32_t walkers = 128; // as few points have
@@ -163,12 +164,19 @@ TEST(GpuPoints, AreAsManyAsWereAskedFor) {
         EXPECT_EQ(points_in(*by_gpu(ChaosSource(game, 1), camera_at({0, 5, 0}, 20), points)), points);
 }
 
-/// Twice, and where two sums are added one after the other.
+/// Again, and however sums are added; pixels are small enough for packed ones, and some fill these more than
+/// once.
 TEST(GpuPoints, AreTheSameEachTime) {
-    const ChaosGame game = testing::played("a.rifs", fern).game();
-    const auto once = by_gpu(ChaosSource(game, 1), camera_at({0, 5, 0}, 14));
-    for (const bool at_once : {true, false}) {
-        const auto again = by_gpu(ChaosSource(game, 1), camera_at({0, 5, 0}, 14), many, at_once);
+    const ChaosGame game = testing::played("a.rifs", quadrants).game();
+    constexpr ImageSize fine{240, 200};
+    constexpr std::uint64_t more = 3'000'000;
+    const Camera camera = camera_at({0.5, 0.5, 0}, 1.2);
+    const auto once = by_gpu(ChaosSource(game, 1), camera, more, GpuPoints::Sums::packed, fine);
+    const auto most = std::ranges::max_element(once->cells(), {}, &Accumulation::Cell::count)->count;
+    EXPECT_GT(most, 400u);
+    EXPECT_LT(most, more / 2048);
+    for (const auto sums : {GpuPoints::Sums::packed, GpuPoints::Sums::pairs, GpuPoints::Sums::apart}) {
+        const auto again = by_gpu(ChaosSource(game, 1), camera, more, sums, fine);
         for (std::size_t i = 0; i < once->cells().size(); ++i) {
             const Accumulation::Cell &a = once->cells()[i], &b = again->cells()[i];
             ASSERT_TRUE(a.count == b.count && std::ranges::equal(a.rgb, b.rgb)) << i;
@@ -187,7 +195,7 @@ TEST(GpuPoints, AreThoseOfTheKernelsText) {
     const Camera camera = camera_at({0.51, 0.52, 0}, 1.43);
     std::string why;
     const std::optional<FlatGame> flat =
-        source.flat(PointProjection(camera, size).picture_from_world(), {}, why);
+        source.flat(PointProjection(camera, small).picture_from_world(), {}, why);
     ASSERT_TRUE(flat) << why;
     constexpr std::uint32_t points = 50'001;
     const std::vector<std::uint32_t> text = by_text(*flat, points);
@@ -202,7 +210,7 @@ TEST(GpuPoints, SinglePrecisionHasItsLimit) {
     const ChaosGame game = testing::played("a.rifs", quadrants).game();
     const ChaosSource source(game, 1);
     const auto is_sharp = [&](double width) {
-        return is_sharp_in_single(source, PointProjection(camera_at({0.3, 0.3, 0}, width), size));
+        return is_sharp_in_single(source, PointProjection(camera_at({0.3, 0.3, 0}, width), small));
     };
     EXPECT_TRUE(is_sharp(1));
     EXPECT_TRUE(is_sharp(1e-3));

@@ -51,6 +51,9 @@ inline void add_pair(uint pair, uint low, uint high) {
     words[2 * pair + 1] += high;
 }
 
+inline constexpr bool PACKS = false;
+inline void add_packed(uint, uvec2) {}
+
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 namespace {

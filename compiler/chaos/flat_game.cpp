@@ -20,6 +20,19 @@ bool ignores_depth(const Affine& map) {
 
 } // namespace
 
+void FlatGame::add_move(const Affine& map, const Paint& paint, const glm::uvec4& move_links) {
+    for (int row = 0; row < 3; ++row)
+        moves.emplace_back(map.linear[0][row], map.linear[1][row], map.linear[2][row], map.translation[row]);
+    moves.emplace_back(paint.fixed[0], paint.fixed[1], paint.fixed[2], paint.open);
+    links.push_back(move_links);
+}
+
+void FlatGame::add_choices(const AliasTables& tables) {
+    for (const AliasTables::Entry& entry : tables.entries())
+        choices.emplace_back(entry.own, entry.choice, entry.alias, 0);
+    wide = choices.size() > most_slots_by_one;
+}
+
 std::optional<FlatGame> FlatGame::of(const ChaosGame& game, const Affine& seen_from_world,
                                      const LabelColour& colour_of, std::string& why) {
     if (game.sources_.size() != 1 || game.sources_.front().core == ChaosGame::none) {
@@ -32,22 +45,13 @@ std::optional<FlatGame> FlatGame::of(const ChaosGame& game, const Affine& seen_f
     const auto links_of = [](const AliasTables::Range& table, std::uint32_t more) {
         return glm::uvec4(table.first, table.count, more, 0);
     };
-    const auto add = [&](const Affine& map, const Paint& paint, const glm::uvec4& links) {
-        for (int row = 0; row < 3; ++row)
-            flat.moves.emplace_back(map.linear[0][row], map.linear[1][row], map.linear[2][row],
-                                    map.translation[row]);
-        flat.moves.emplace_back(paint.fixed[0], paint.fixed[1], paint.fixed[2], paint.open);
-        flat.links.push_back(links);
-    };
-    for (const AliasTables::Entry& entry : game.tables_.entries())
-        flat.choices.emplace_back(entry.own, entry.choice, entry.alias, 0);
+    flat.add_choices(game.tables_);
 
     std::vector<bool> wanders(game.moves_.size(), false);
     const auto each_move_of = [&](const AliasTables::Range& table, const auto& visit) {
         for (std::uint32_t i = table.first; i < table.first + table.count; ++i)
             for (const std::uint32_t move : {flat.choices[i].y, flat.choices[i].z})
                 visit(move);
-        flat.wide = flat.wide || table.count > most_slots_by_one;
     };
     for (const ChaosGame::State& state : game.states_) {
         each_move_of(state.wander, [&](std::uint32_t move) { wanders[move] = true; });
@@ -63,14 +67,14 @@ std::optional<FlatGame> FlatGame::of(const ChaosGame& game, const Affine& seen_f
         Paint paint = move.paint;
         if (colour_of) paint = move.label == 0 ? Paint() : Paint(MeanColour{colour_of(move.label), 0});
         if (move.to == ChaosGame::none)
-            add(map, paint, glm::uvec4(0, 0, none, 0));
+            flat.add_move(map, paint, glm::uvec4(0, 0, none, 0));
         else if (wanders[i]) {
-            add(map, paint, links_of(game.states_[move.to].wander, move.to));
+            flat.add_move(map, paint, links_of(game.states_[move.to].wander, move.to));
             most_open = std::max<double>(most_open, paint.open);
         } else
-            add(map, paint,
-                glm::uvec4(flat.states[move.to].x, flat.states[move.to].y,
-                           core.base || colour_of ? none : move.material, 0));
+            flat.add_move(map, paint,
+                          glm::uvec4(flat.states[move.to].x, flat.states[move.to].y,
+                                     core.base || colour_of ? none : move.material, 0));
     }
 
     // Points begin by a move, too: from anywhere to the middle of a state.
@@ -83,18 +87,17 @@ std::optional<FlatGame> FlatGame::of(const ChaosGame& game, const Affine& seen_f
         for (std::uint32_t* const chosen : {&choice.y, &choice.z}) {
             const std::uint32_t state = state_of(*chosen);
             const Affine middle{Mat3(0.0), seen_from_world(game.middles_[state])};
-            add(middle, Paint(), links_of(game.states_[state].wander, state));
+            flat.add_move(middle, Paint(), links_of(game.states_[state].wander, state));
             *chosen = first_start + starts++;
         }
     }
-    flat.settling = game.settling_ / 2; // to single precision
+    flat.settling = 1 + game.settling_ / 2; // to single precision
     flat.sees_through = std::pow(most_open, flat.settling) > 1e-4;
     flat.climbs = !core.in_world;
     flat.leaves = !core.always_leaves;
-    const auto add_colour = [&](const Rgb& rgb) { flat.colours.emplace_back(rgb.r, rgb.g, rgb.b, 0); };
     for (const Rgb& material : game.materials_)
-        add_colour(material);
-    add_colour(colour_of ? colour_of(0) : core.base.value_or(Material{}.rgb));
+        flat.add_colour(material);
+    flat.add_colour(colour_of ? colour_of(0) : core.base.value_or(Material{}.rgb));
     return flat;
 }
 

@@ -25,8 +25,14 @@ struct FlatGame {
     std::vector<glm::uvec4> states; ///< of the game, by number
     std::vector<glm::vec4> colours; ///< of materials, then what is behind a point that met none
 
+    std::vector<glm::uvec4> steps; ///< of formulas (compiler/syntax/expression_steps.h)
+    std::vector<float> numbers;    ///< of these
+    std::uint32_t slots = 0;       ///< of these
+
     AliasTables::Range start;   ///< of the core's points
     std::uint32_t settling = 0; ///< moves until where a point began is forgotten
+    bool formulas = false;      ///< in place of affine maps
+    glm::vec4 origin{0.0};      ///< of walkers
     bool climbs = false;        ///< from a core to the world
     bool leaves = false;        ///< only by chance
     bool flat = false;          ///< x and y of no map depend on z
@@ -38,6 +44,10 @@ struct FlatGame {
     /// tints; null: tints.
     static std::optional<FlatGame> of(const ChaosGame& game, const Affine& seen_from_world,
                                       const LabelColour& colour_of, std::string& why);
+
+    void add_move(const Affine& map, const Paint& paint, const glm::uvec4& move_links);
+    void add_choices(const AliasTables& tables);
+    void add_colour(const Rgb& rgb) { colours.emplace_back(rgb.r, rgb.g, rgb.b, 0); }
 
     static constexpr std::uint32_t numbers_of_move = 4;
     static constexpr std::uint32_t none = UINT32_MAX;

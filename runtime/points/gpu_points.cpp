@@ -12,6 +12,7 @@ namespace graftal {
 
 namespace points_kernel {
 using glm::uvec4;
+using glm::vec4;
 #include "runtime/points/kernel/job.glsl"
 } // namespace points_kernel
 
@@ -20,18 +21,8 @@ namespace {
 #include "runtime/points/points_64_spirv.h"
 #include "runtime/points/points_spirv.h"
 
-enum Binding : std::uint8_t {
-    choices,
-    moves,
-    links,
-    states,
-    colours,
-    walkers,
-    cells,
-    totals,
-    packed,
-    bindings
-};
+/// Of the kernel's buffers, those that are read back, and their number.
+constexpr std::size_t cells_binding = 6, totals_binding = 7, bindings = 11;
 
 constexpr std::uint32_t group_size = GROUP_SIZE, cells_of_thread = CELLS_OF_THREAD;
 constexpr std::size_t bytes_of_walker = 64;
@@ -116,12 +107,14 @@ GpuPoints::Colours GpuPoints::colours_of(FlatGame& game) {
 
 Status GpuPoints::load(const FlatGame& game, const Work& work, std::uint32_t walkers_of_it,
                        std::size_t cells_of_it) {
-    const std::array<std::uint32_t, 6> constants = {game.flat && !work.perspective,
+    const std::array<std::uint32_t, 8> constants = {game.flat && !work.perspective,
                                                     work.perspective,
                                                     colours_.channels,
                                                     game.climbs,
                                                     game.leaves,
-                                                    game.wide};
+                                                    game.wide,
+                                                    game.formulas,
+                                                    std::max(game.slots, 6u)};
     Status status =
         gpu_.load(sums_ != Sums::apart ? std::span<const std::uint32_t>(points_64_spirv) : points_spirv,
                   bindings, sizeof(Job), constants);
@@ -136,6 +129,8 @@ Status GpuPoints::load(const FlatGame& game, const Work& work, std::uint32_t wal
           cells_of_it * words_of_cell(colours_.channels) * sizeof(std::uint32_t),
           totals_.size() * sizeof(glm::uvec4), packs_ ? cells_of_it * sizeof(std::uint64_t) : 0})
         if (status.ok()) status = gpu_.add_buffer({}, size);
+    for (const std::span<const std::byte> bytes : {bytes_of(game.steps), bytes_of(game.numbers)})
+        if (status.ok()) status = gpu_.add_buffer(bytes);
     return status;
 }
 
@@ -143,7 +138,7 @@ Status GpuPoints::run(const Job& job, std::uint32_t groups, double& seconds) {
     Status status = gpu_.run(std::as_bytes(std::span(&job, 1)), groups, seconds);
     if (!status.ok()) return status;
     seconds_ += seconds;
-    return gpu_.read(totals, std::as_writable_bytes(std::span(totals_.data(), groups)));
+    return gpu_.read(totals_binding, std::as_writable_bytes(std::span(totals_.data(), groups)));
 }
 
 Status GpuPoints::sweep(Job job, std::uint64_t& most, std::uint64_t& sum) {
@@ -168,7 +163,7 @@ Status GpuPoints::flush(Accumulation& picture, const Job& job, std::uint64_t poi
         const std::size_t number = std::min(cells_at_once, job.cells() - first);
         const std::span<std::uint32_t> read(some.data(), number * words);
         if (Status status =
-                gpu_.read(cells, std::as_writable_bytes(read), first * words * sizeof(std::uint32_t));
+                gpu_.read(cells_binding, std::as_writable_bytes(read), first * words * sizeof(std::uint32_t));
             !status.ok())
             return status;
         for (std::size_t i = 0; i < number; ++i) {
@@ -189,7 +184,7 @@ Status GpuPoints::flush(Accumulation& picture, const Job& job, std::uint64_t poi
     // A number that flows over is short by 2^32, whatever else it takes along: no other one makes up for
     // that.
     if (sum != points) return Status::failure("GPU: a pixel has more points than its sums hold");
-    return gpu_.clear(cells);
+    return gpu_.clear(cells_binding);
 }
 
 Status GpuPoints::play(Accumulation& picture, const Work& work, Job job) {
@@ -216,6 +211,9 @@ Status GpuPoints::play(Accumulation& picture, const Work& work, Job job) {
         if (Status status = run(job, groups, seconds); !status.ok()) return status;
         for (std::uint32_t group = 0; group < groups; ++group)
             inside += totals_[group].x;
+        if (std::ranges::any_of(std::span(totals_).first(groups),
+                                [](const glm::uvec4& seen) { return seen.y > 0; }))
+            return Status::failure("in single precision an orbit goes astray");
         made += number * job.work[0] + job.work[2];
         done += number;
         std::uint64_t most = 0, sum = 0;
@@ -269,6 +267,8 @@ Status GpuPoints::add_to(Accumulation& picture, FlatGame game, const Work& work)
     job.work[0] = walkers_for(work.points);
     job.start = {game.start.first, game.start.count, game.settling,
                  static_cast<std::uint32_t>(game.colours.size() - 1)};
+    job.orbit.x = static_cast<std::uint32_t>(game.links.size() - 1);
+    job.origin = game.origin;
     if (Status status = load(game, work, job.work[0], std::size_t{width} * rows); !status.ok()) return status;
     // Where not all rows have room, each band of them takes the same points again.
     for (std::uint32_t row = 0; row < height; row += rows) {

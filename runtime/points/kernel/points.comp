@@ -13,6 +13,10 @@
 #define states(i) all_states[i]
 #define colours(i) all_colours[i]
 #define float_of(bits) uintBitsToFloat(bits)
+#define word_of(x) floatBitsToUint(x)
+#define steps(i) all_steps[i]
+#define numbers(i) all_numbers[i]
+#define atan_of(y, x) atan(y, x)
 #define add_word(i, number) atomicAdd(words[i], number)
 
 layout(constant_id = 0) const bool FLAT = false; // x and y of no map depend on z
@@ -22,12 +26,19 @@ layout(constant_id = 3) const bool CLIMBS = false; // from a core to the world
 layout(constant_id = 4) const bool LEAVES = false; // only by chance
 layout(constant_id = 5) const bool WIDE = false;   // some table needs two random numbers
 
+layout(constant_id = 6) const bool FORMULAS = false;
+layout(constant_id = 7) const int SLOTS = 6; // of formulas
+
 layout(local_size_x = 128) in;
 layout(std430, binding = 0) readonly restrict buffer Choices { uvec4 all_choices[]; };
 layout(std430, binding = 1) readonly restrict buffer Moves { vec4 all_moves[]; };
 layout(std430, binding = 2) readonly restrict buffer Links { uvec4 all_links[]; };
 layout(std430, binding = 3) readonly restrict buffer States { uvec4 all_states[]; };
 layout(std430, binding = 4) readonly restrict buffer Colours { vec4 all_colours[]; };
+layout(std430, binding = 9) readonly restrict buffer Steps { uvec4 all_steps[]; };
+layout(std430, binding = 10) readonly restrict buffer Numbers { float all_numbers[]; };
+
+float slots[SLOTS];
 
 // Cells, by pixel: the number of points alone; or a pair, the sum of a colour's levels and the number of points, and
 // with three channels a second pair of sums.
@@ -78,7 +89,7 @@ void add_packed(uint cell, uvec2 point) {}
 
 layout(std430, binding = 5) restrict buffer Walkers { Walker walkers[]; };
 
-// By group: points inside the window; or the largest number in a cell, and the sum of all, its low halves and its high
+// By group: points inside the window, and walkers that went astray; or the largest number in a cell, and the sum of all, its low halves and its high
 // halves.
 layout(std430, binding = 7) restrict buffer Totals { uvec4 totals[]; };
 
@@ -117,6 +128,7 @@ void main() {
         else
             walker = walkers[i];
         atomicAdd(of_group[0], played(i, walker));
+        if (walker.place.w > 0.0) atomicAdd(of_group[1], 1u);
         walkers[i] = walker;
     }
     barrier();

@@ -5,6 +5,8 @@
 // links() of a move: the table of what comes next, its first slot and its number of slots. Then of a move in the core
 // the state that it leads to; of one outside its material.
 // states(): the table of a state's climb, likewise; the chance that a point leaves.
+// Of formulas, links() are the table and in the fourth number the material of a map, states() its first step and its
+// steps, and moves() its paint alone.
 // colours() of materials; the last is behind what has met none.
 
 #define NO_MATERIAL 0xffffffffu
@@ -65,27 +67,22 @@ struct Point {
     vec4 paint;
 };
 
-Point moved(Point point, uint move) {
+#include "runtime/points/kernel/formulas.glsl"
+
+vec3 mapped(vec3 p, uint move) {
     const vec4 x = moves(4u * move), y = moves(4u * move + 1u);
-    const vec3 p = point.place;
-    Point image = point;
-    if (FLAT) {
-        image.place.x = x.x * p.x + x.y * p.y + x.w;
-        image.place.y = y.x * p.x + y.y * p.y + y.w;
-    } else {
-        const vec4 z = moves(4u * move + 2u);
-        image.place.x = x.x * p.x + x.y * p.y + x.z * p.z + x.w;
-        image.place.y = y.x * p.x + y.y * p.y + y.z * p.z + y.w;
-        image.place.z = z.x * p.x + z.y * p.y + z.z * p.z + z.w;
-    }
-    if (CHANNELS > 0u) {
-        const vec4 front = moves(4u * move + 3u);
-        image.paint.x = front.x + front.w * point.paint.x;
-        image.paint.y = front.y + front.w * point.paint.y;
-        image.paint.z = front.z + front.w * point.paint.z;
-        image.paint.w = front.w * point.paint.w;
-    }
-    return image;
+    if (FLAT) return vec3(x.x * p.x + x.y * p.y + x.w, y.x * p.x + y.y * p.y + y.w, p.z);
+    const vec4 z = moves(4u * move + 2u);
+    return vec3(x.x * p.x + x.y * p.y + x.z * p.z + x.w, y.x * p.x + y.y * p.y + y.z * p.z + y.w,
+                z.x * p.x + z.y * p.y + z.z * p.z + z.w);
+}
+
+/// A paint behind that of a move.
+vec4 painted(vec4 paint, uint move) {
+    if (CHANNELS == 0u) return paint;
+    const vec4 front = moves(4u * move + 3u);
+    return vec4(front.x + front.w * paint.x, front.y + front.w * paint.y, front.z + front.w * paint.z,
+                front.w * paint.w);
 }
 
 /// A colour's level, rounded up or down by chance, so that its mean is right. `chances`: random bits, of which ten
@@ -138,35 +135,61 @@ uint counted(Point point, uint material, INOUT(uvec4) random) {
     return 1u;
 }
 
-void wander(INOUT(Point) point, INOUT(uvec4) at, INOUT(uvec4) random) {
+/// Moves a point on; false where that is impossible.
+bool wander(INOUT(Point) point, INOUT(uvec4) at, INOUT(uvec4) random) {
     const uint move = chosen(at, random);
-    point = moved(point, move);
+    const uint material = at.w;
     at = links(move);
+    point.paint = painted(point.paint, move);
+    if (!FORMULAS) {
+        point.place = mapped(point.place, move);
+        return true;
+    }
+    if (at.w == NO_MATERIAL) at.w = material;
+    return compute(move, point.place, random);
+}
+
+/// Counts what is shown of an orbit's point. Behind the maps is the last move: the formulas of `final`, if there are
+/// any, and the way to what is seen.
+bool count_orbit(Point point, uint material, INOUT(uint) inside, INOUT(uvec4) random) {
+    const uint last = job.orbit.x;
+    if (states(last).y > 0u && !compute(last, point.place, random)) return false;
+    const uint of_last = links(last).w;
+    point.place = mapped(point.place, last);
+    point.paint = painted(point.paint, last);
+    inside += counted(point, of_last == NO_MATERIAL ? material : of_last, random);
+    return true;
 }
 
 Walker new_walker(uint number) {
     Walker walker;
     walker.random = mixed(uvec4(number, job.more.x, job.more.y, 0x9E3779B9u));
     walker.random.w |= 1u;
-    walker.at = uvec4(job.start.x, job.start.y, 0u, 0u);
-    walker.place = vec4(0.0f);
+    walker.at = uvec4(job.start.x, job.start.y, 0u, NO_MATERIAL);
+    walker.place = job.origin;
     walker.paint = vec4(0.0f, 0.0f, 0.0f, 1.0f);
     return walker;
 }
 
-/// The points of a walker; how many of them were in the window.
+/// The points of a walker; how many of them were in the window. The fourth number of its place is 1 where it went astray.
 uint played(uint number, INOUT(Walker) walker) {
     uvec4 random = walker.random, at = walker.at;
     Point point;
     point.place = vec3(walker.place.x, walker.place.y, walker.place.z);
     point.paint = walker.paint;
+    bool goes_on = true;
     if ((job.work.w & JOB_BEGINS) != 0u)
-        for (uint i = 0u; i <= job.start.z; ++i)
-            wander(point, at, random);
+        for (uint i = 0u; i < job.start.z && goes_on; ++i)
+            goes_on = wander(point, at, random);
     uint inside = 0u;
     const uint points = job.work.y + (number < job.work.z ? 1u : 0u);
-    for (uint i = 0u; i < points;) {
-        wander(point, at, random);
+    for (uint i = 0u; i < points && goes_on;) {
+        goes_on = wander(point, at, random);
+        if (FORMULAS) {
+            goes_on = goes_on && count_orbit(point, at.w, inside, random);
+            ++i;
+            continue;
+        }
         if (!CLIMBS) {
             inside += counted(point, NO_MATERIAL, random);
             ++i;
@@ -185,7 +208,7 @@ uint played(uint number, INOUT(Walker) walker) {
     }
     walker.random = random;
     walker.at = at;
-    walker.place = vec4(point.place.x, point.place.y, point.place.z, 0.0f);
+    walker.place = vec4(point.place.x, point.place.y, point.place.z, goes_on ? 0.0f : 1.0f);
     walker.paint = point.paint;
     return inside;
 }

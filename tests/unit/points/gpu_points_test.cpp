@@ -71,6 +71,7 @@ std::vector<std::uint32_t> by_text(const FlatGame& game, std::uint32_t points) {
     text::CLIMBS = game.climbs;
     text::LEAVES = game.leaves;
     text::WIDE = game.wide;
+    text::FORMULAS = game.formulas;
     const auto last = static_cast<std::uint32_t>(game.colours.size() - 1);
     text::words.assign(static_cast<std::size_t>(small.width) * small.height, 0);
     text::job.window = {small.width, small.height, 0, small.height};

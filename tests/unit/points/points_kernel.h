@@ -21,7 +21,8 @@ using uint = std::uint32_t;
 
 inline const FlatGame* game = nullptr;
 inline Job job;
-inline bool FLAT, PERSPECTIVE, CLIMBS, LEAVES, WIDE;
+inline bool FLAT, PERSPECTIVE, CLIMBS, LEAVES, WIDE, FORMULAS;
+inline float slots[256];
 inline uint CHANNELS;
 inline std::vector<uint> words;
 
@@ -39,6 +40,18 @@ inline uvec4 states(uint i) {
 }
 inline vec4 colours(uint i) {
     return game->colours[i];
+}
+inline uvec4 steps(uint i) {
+    return game->steps[i];
+}
+inline float numbers(uint i) {
+    return game->numbers[i];
+}
+inline float atan_of(float y, float x) {
+    return std::atan2(y, x);
+}
+inline uint word_of(float x) {
+    return floatBitsToUint(x);
 }
 inline float float_of(uint bits) {
     return uintBitsToFloat(bits);

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/points/orbit_source.h"
 #include "tests/unit/chaos/games.h"
 #include "tests/unit/points/points_kernel.h"
 
@@ -119,15 +120,19 @@ Distance distance(const Accumulation& a, const Accumulation& b) {
     return found;
 }
 
+/// `other`: with another seed.
+void expect_same_measure(const PointSource& source, const PointSource& other_source, const Camera& camera) {
+    const auto one = by_processors(source, camera), other = by_processors(other_source, camera),
+               gpu = by_gpu(source, camera);
+    const Distance by_chance = distance(*one, *other), found = distance(*one, *gpu);
+    EXPECT_LT(found.counts, 1.15 * by_chance.counts + 0.1);
+    EXPECT_GT(found.counts, 0.85 * by_chance.counts - 0.1);
+    EXPECT_LT(found.colours, 1.2 * by_chance.colours + 1e-3);
+}
+
 void expect_same_measure(const std::string& name, const std::string& text, const Camera& camera) {
     const ChaosGame game = testing::played(name, text).game();
-    const auto one = by_processors(ChaosSource(game, 1), camera),
-               other = by_processors(ChaosSource(game, 2), camera),
-               gpu = by_gpu(ChaosSource(game, 1), camera);
-    const Distance by_chance = distance(*one, *other), found = distance(*one, *gpu);
-    EXPECT_LT(found.counts, 1.15 * by_chance.counts + 0.1) << text;
-    EXPECT_GT(found.counts, 0.85 * by_chance.counts - 0.1) << text;
-    EXPECT_LT(found.colours, 1.2 * by_chance.colours + 1e-3) << text;
+    expect_same_measure(ChaosSource(game, 1), ChaosSource(game, 2), camera);
 }
 
 const std::string fern = "rifs fern { codes 2d {\n stem: 0 0 0 .16 0 0 .01 tint rgb <.2, .1, 0> 0.9\n"
@@ -205,6 +210,99 @@ TEST(GpuPoints, AreThoseOfTheKernelsText) {
     for (std::size_t i = 0; i < text.size(); ++i)
         apart += std::abs(static_cast<double>(text[i]) - static_cast<double>(device->cells()[i].count));
     EXPECT_LT(apart, 20);
+}
+
+/// The formulas of two maps, as steps of the kernel's text and as the processors compute them.
+TEST(GpuPoints, FormulasHaveTheirValues) {
+    const char* const formulas[] = {"sin(x)",
+                                    "cos(x)",
+                                    "tan(x)",
+                                    "asin(x/40)",
+                                    "acos(y/40)",
+                                    "atan(x)",
+                                    "atan2(x, y)",
+                                    "sqrt(x)",
+                                    "exp(x/10)",
+                                    "log(y)",
+                                    "floor(x)",
+                                    "ceil(y)",
+                                    "abs(x)",
+                                    "sign(x)",
+                                    "min(x, y)",
+                                    "max(x, y)",
+                                    "mod(x, y)",
+                                    "pow(x, 3)",
+                                    "pow(y, 2)",
+                                    "pow(x, 0.5)",
+                                    "lerp(x, y, 0.3)",
+                                    "choose(x > y, 1/(x - y), y)",
+                                    "smooth(-3, 5, x)",
+                                    "logistic(x, 3, 0.2, y)",
+                                    "x % 3",
+                                    "x ^ -1",
+                                    "-x + 2*y - x/y",
+                                    "!(x < y)",
+                                    "x < 0 && sqrt(-x) > 2",
+                                    "x < 0 || sqrt(x) > 2",
+                                    "(x == y) + (x != y)",
+                                    "(x <= 4) + (y >= 4)",
+                                    "let",
+                                    "7",
+                                    "y"};
+    int values = 0, none = 0;
+    for (const std::string formula : formulas) {
+        const std::string map =
+            formula == "let" ? "let a = x + y, b = a*a\n x = b - a y = a" : "x = " + formula + " y = 0";
+        SourceMap sources;
+        Diagnostics diagnostics;
+        LowerOptions options;
+        options.may_be_orbit = true;
+        const auto lowered =
+            lower_text("o.rifs", "orbit o {\n map { " + map + " }\n map { x = 0 y = 0 }\n}\n", options,
+                       sources, diagnostics);
+        ASSERT_TRUE(lowered.notes.orbit) << formula << diagnostics.render(sources);
+        const OrbitModel& model = *lowered.notes.orbit;
+        std::string why;
+        const std::optional<FlatGame> flat = OrbitSource(model, 1).flat(Affine(), {}, why);
+        ASSERT_TRUE(flat) << formula << why;
+        points_kernel::game = &*flat;
+        RandomStream random(1, 1);
+        glm::uvec4 unused(1);
+        std::vector<double> slots;
+        for (int i = 0; i < 100; ++i) {
+            const Vec3 place(std::floor(80 * random.unit() - 40) / 4, std::floor(80 * random.unit() - 40) / 4,
+                             0);
+            const std::optional<Vec3> expected = apply(model.maps[0], place, {}, slots);
+            glm::vec3 found = place;
+            ASSERT_EQ(points_kernel::compute(0, found, unused), expected.has_value())
+                << formula << place.x << "," << place.y;
+            ++(expected ? values : none);
+            if (!expected) continue;
+            EXPECT_NEAR(found.x, expected->x, 2e-5 * (1 + std::abs(expected->x)))
+                << formula << " " << place.x << "," << place.y;
+        }
+    }
+    EXPECT_GT(values, 2000);
+    EXPECT_GT(none, 100);
+}
+
+TEST(GpuPoints, OrbitsHaveTheMeasureOfTheProcessors) {
+    const std::string text =
+        "orbit o {\n start <0.1, 0.2>\n"
+        "map { let u = random(0, 360) x = x/2 + cos(u)/4 y = y/2 + normal(0, 0.1)\n"
+        " tint rgb <1, 0, 0> 1/2 }\n"
+        "map { let r = x*x + y*y x = sin(60*x) + y/3 y = r/(1 + r) tint rgb <0, 0, 1> 1/2 }\n"
+        "map { x = 1 - abs(y) y = x/2 }\n"
+        "follow matrix {\n 1 1 0\n 1 1 2\n 1 1 1\n }\n"
+        "final { x = x + y*y y = y tint rgb <0, 1, 0> 0.1 }\n}\n";
+    SourceMap sources;
+    Diagnostics diagnostics;
+    LowerOptions options;
+    options.may_be_orbit = true;
+    const auto lowered = lower_text("o.rifs", text, options, sources, diagnostics);
+    ASSERT_TRUE(lowered.notes.orbit) << diagnostics.render(sources);
+    expect_same_measure(OrbitSource(*lowered.notes.orbit, 1), OrbitSource(*lowered.notes.orbit, 2),
+                        camera_at({0.3, 0.4, 0}, 3.07));
 }
 
 TEST(GpuPoints, SinglePrecisionHasItsLimit) {

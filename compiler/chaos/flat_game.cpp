@@ -10,7 +10,7 @@ namespace {
 
 /// Slots of a table that one random number of 32 bits chooses from, with chances kept to 2^-20.
 constexpr std::uint32_t most_slots_by_one = 4096;
-/// What z may add to x and y, relative to their own size, where rounding alone makes it more than 0.
+/// Share of z in x and y, relative to their own size, that rounding alone may give.
 constexpr double rounding = 1e-12;
 
 bool ignores_depth(const Affine& map) {

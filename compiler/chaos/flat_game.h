@@ -25,7 +25,7 @@ struct FlatGame {
     std::vector<glm::uvec4> states; ///< of the game, by number
     std::vector<glm::vec4> colours; ///< of materials, then what is behind a point that met none
 
-    std::vector<glm::uvec4> steps; ///< of formulas (compiler/syntax/expression_steps.h)
+    std::vector<glm::uvec4> steps; ///< of formulas (compiler/syntax/steps/expression_steps.h)
     std::vector<float> numbers;    ///< of these
     std::uint32_t slots = 0;       ///< of these
 

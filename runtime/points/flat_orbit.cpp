@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compiler/syntax/expression_steps.h"
+#include "compiler/syntax/steps/expression_steps.h"
 #include "runtime/points/orbit_source.h"
 
 namespace graftal {

@@ -21,7 +21,7 @@ namespace {
 #include "runtime/points/points_64_spirv.h"
 #include "runtime/points/points_spirv.h"
 
-/// Of the kernel's buffers, those that are read back, and their number.
+/// The kernel's buffers that are read back, and the number of all.
 constexpr std::size_t cells_binding = 6, totals_binding = 7, bindings = 11;
 
 constexpr std::uint32_t group_size = GROUP_SIZE, cells_of_thread = CELLS_OF_THREAD;
@@ -192,7 +192,7 @@ Status GpuPoints::play(Accumulation& picture, const Work& work, Job job) {
     const double room = room_of_cell(colours_.channels);
     const std::uint64_t most_moves = std::max<std::uint64_t>(
         gpu_.info().is_processor ? most_moves_by_software : most_points_a_piece / job.work[0], 1);
-    // As many points as a cell holds may all fall into one. Later pieces are larger, by where these fell.
+    // The first points all have room in one cell. Later pieces are larger, by where these fell.
     auto piece = static_cast<std::uint64_t>(std::max(room / job.work[0], 1.0));
     piece = std::min<std::uint64_t>(piece, 256);
     std::uint64_t inside = 0, made = 0; // since the last flush

@@ -1,4 +1,4 @@
-#include "compiler/syntax/expression_steps.h"
+#include "compiler/syntax/steps/expression_steps.h"
 
 #include <algorithm>
 #include <optional>

@@ -22,7 +22,7 @@ namespace {
 #include "runtime/points/points_spirv.h"
 
 /// The kernel's buffers that are read back, and the number of all.
-constexpr std::size_t cells_binding = 6, totals_binding = 7, bindings = 11;
+constexpr std::size_t cells_binding = 6, totals_binding = 7, bindings = 12;
 
 constexpr std::uint32_t group_size = GROUP_SIZE, cells_of_thread = CELLS_OF_THREAD;
 constexpr std::size_t bytes_of_walker = 64;
@@ -107,12 +107,13 @@ GpuPoints::Colours GpuPoints::colours_of(FlatGame& game) {
 
 Status GpuPoints::load(const FlatGame& game, const Work& work, std::uint32_t walkers_of_it,
                        std::size_t cells_of_it) {
-    const std::array<std::uint32_t, 8> constants = {game.flat && !work.perspective,
+    const std::array<std::uint32_t, 9> constants = {game.flat && !work.perspective,
                                                     work.perspective,
                                                     colours_.channels,
                                                     game.climbs,
                                                     game.leaves,
                                                     game.wide,
+                                                    game.sources.count > 0,
                                                     game.formulas,
                                                     std::max(game.slots, 6u)};
     Status status =
@@ -129,7 +130,8 @@ Status GpuPoints::load(const FlatGame& game, const Work& work, std::uint32_t wal
           cells_of_it * words_of_cell(colours_.channels) * sizeof(std::uint32_t),
           totals_.size() * sizeof(glm::uvec4), packs_ ? cells_of_it * sizeof(std::uint64_t) : 0})
         if (status.ok()) status = gpu_.add_buffer({}, size);
-    for (const std::span<const std::byte> bytes : {bytes_of(game.steps), bytes_of(game.numbers)})
+    for (const std::span<const std::byte> bytes :
+         {bytes_of(game.steps), bytes_of(game.numbers), bytes_of(game.forms)})
         if (status.ok()) status = gpu_.add_buffer(bytes);
     return status;
 }
@@ -267,7 +269,8 @@ Status GpuPoints::add_to(Accumulation& picture, FlatGame game, const Work& work)
     job.work[0] = walkers_for(work.points);
     job.start = {game.start.first, game.start.count, game.settling,
                  static_cast<std::uint32_t>(game.colours.size() - 1)};
-    job.orbit.x = static_cast<std::uint32_t>(game.links.size() - 1);
+    job.orbit = {game.links.size() - 1, game.core_colour, game.first_form, 0};
+    job.sources = {game.sources.first, game.sources.count, 0, 0};
     job.origin = game.origin;
     if (Status status = load(game, work, job.work[0], std::size_t{width} * rows); !status.ok()) return status;
     // Where not all rows have room, each band of them takes the same points again.

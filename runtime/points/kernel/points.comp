@@ -13,6 +13,7 @@
 #define states(i) all_states[i]
 #define colours(i) all_colours[i]
 #define float_of(bits) uintBitsToFloat(bits)
+#define forms(i) all_forms[i]
 #define word_of(x) floatBitsToUint(x)
 #define steps(i) all_steps[i]
 #define numbers(i) all_numbers[i]
@@ -26,8 +27,9 @@ layout(constant_id = 3) const bool CLIMBS = false; // from a core to the world
 layout(constant_id = 4) const bool LEAVES = false; // only by chance
 layout(constant_id = 5) const bool WIDE = false;   // some table needs two random numbers
 
-layout(constant_id = 6) const bool FORMULAS = false;
-layout(constant_id = 7) const int SLOTS = 6; // of formulas
+layout(constant_id = 6) const bool SOURCES = false; // others than the core
+layout(constant_id = 7) const bool FORMULAS = false;
+layout(constant_id = 8) const int SLOTS = 6; // of formulas
 
 layout(local_size_x = 128) in;
 layout(std430, binding = 0) readonly restrict buffer Choices { uvec4 all_choices[]; };
@@ -37,6 +39,7 @@ layout(std430, binding = 3) readonly restrict buffer States { uvec4 all_states[]
 layout(std430, binding = 4) readonly restrict buffer Colours { vec4 all_colours[]; };
 layout(std430, binding = 9) readonly restrict buffer Steps { uvec4 all_steps[]; };
 layout(std430, binding = 10) readonly restrict buffer Numbers { float all_numbers[]; };
+layout(std430, binding = 11) readonly restrict buffer Forms { vec4 all_forms[]; };
 
 float slots[SLOTS];
 

@@ -10,6 +10,7 @@
 // colours() of materials; the last is behind what has met none.
 
 #define NO_MATERIAL 0xffffffffu
+#define CORE 0xffffffffu // as a source
 
 struct Walker {
     vec4 place;
@@ -135,6 +136,8 @@ uint counted(Point point, uint material, INOUT(uvec4) random) {
     return 1u;
 }
 
+#include "runtime/points/kernel/surfaces.glsl"
+
 /// Moves a point on; false where that is impossible.
 bool wander(INOUT(Point) point, INOUT(uvec4) at, INOUT(uvec4) random) {
     const uint move = chosen(at, random);
@@ -183,27 +186,34 @@ uint played(uint number, INOUT(Walker) walker) {
             goes_on = wander(point, at, random);
     uint inside = 0u;
     const uint points = job.work.y + (number < job.work.z ? 1u : 0u);
-    for (uint i = 0u; i < points && goes_on;) {
-        goes_on = wander(point, at, random);
+    for (uint i = 0u; i < points && goes_on; ++i) {
         if (FORMULAS) {
-            goes_on = goes_on && count_orbit(point, at.w, inside, random);
-            ++i;
+            goes_on = wander(point, at, random) && count_orbit(point, at.w, inside, random);
             continue;
         }
-        if (!CLIMBS) {
-            inside += counted(point, NO_MATERIAL, random);
-            ++i;
-            continue;
+        uint source = SOURCES ? chosen(uvec4(job.sources.x, job.sources.y, 0u, 0u), random) : CORE;
+        Point climbing;
+        uvec4 up;
+        uint material;
+        if (source == CORE) {
+            do
+                wander(point, at, random);
+            while (LEAVES && unit_of(next_random(random)) >= float_of(states(at.z).z));
+            climbing = point;
+            if (CLIMBS) up = states(at.z);
+            material = job.orbit.y;
+        } else {
+            climbing.place = surface_place(source, random);
+            climbing.place = mapped(climbing.place, source);
+            climbing.paint = painted(vec4(0.0f, 0.0f, 0.0f, 1.0f), source);
+            up = links(source);
+            material = up.z;
         }
-        const uvec4 state = states(at.z);
-        if (LEAVES && unit_of(next_random(random)) >= float_of(state.z)) continue;
-        ++i;
-        Point climbing = point;
-        uint material = NO_MATERIAL;
-        for (uvec4 up = state; up.y > 0u;) {
-            wander(climbing, up, random);
-            if (material == NO_MATERIAL) material = up.z;
-        }
+        if (CLIMBS)
+            while (up.y > 0u) {
+                wander(climbing, up, random);
+                if (material == NO_MATERIAL) material = up.z;
+            }
         inside += counted(climbing, material, random);
     }
     walker.random = random;

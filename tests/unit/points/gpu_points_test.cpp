@@ -72,11 +72,14 @@ std::vector<std::uint32_t> by_text(const FlatGame& game, std::uint32_t points) {
     text::CLIMBS = game.climbs;
     text::LEAVES = game.leaves;
     text::WIDE = game.wide;
+    text::SOURCES = game.sources.count > 0;
     text::FORMULAS = game.formulas;
     const auto last = static_cast<std::uint32_t>(game.colours.size() - 1);
     text::words.assign(static_cast<std::size_t>(small.width) * small.height, 0);
     text::job.window = {small.width, small.height, 0, small.height};
     text::job.start = {game.start.first, game.start.count, game.settling, last};
+    text::job.orbit = {game.links.size() - 1, game.core_colour, game.first_form, 0};
+    text::job.sources = {game.sources.first, game.sources.count, 0, 0};
     text::job.more = {7, 0, text::words.size(), 1};
     constexpr std::uint32_t walkers = 128; // as few points have
     text::job.work = {walkers, points / walkers, points % walkers, JOB_BEGINS};
@@ -98,24 +101,25 @@ std::uint64_t points_in(const Accumulation& picture) {
 struct Distance {
     double counts = 0;  ///< a pixel, in what chance would give if points were independent: 1
     double colours = 0; ///< of means, a point
+    double pixels = 0;  ///< that were compared
 };
 
 Distance distance(const Accumulation& a, const Accumulation& b) {
     Distance found;
-    double pixels = 0, points = 0;
+    double points = 0;
     for (std::size_t i = 0; i < a.cells().size(); ++i) {
         const Accumulation::Cell &one = a.cells()[i], &other = b.cells()[i];
         const auto here = static_cast<double>(one.count), there = static_cast<double>(other.count);
         if (here + there < 20) continue;
-        ++pixels;
+        ++found.pixels;
         found.counts += (here - there) * (here - there) / (here + there);
         if (one.count == 0 || other.count == 0) continue;
         const Rgb apart = a.mean_colour(one) - b.mean_colour(other);
         points += here;
         found.colours += here * (std::abs(apart.r) + std::abs(apart.g) + std::abs(apart.b));
     }
-    EXPECT_GT(pixels, 50);
-    found.counts /= pixels;
+    EXPECT_GT(found.pixels, 50);
+    found.counts /= found.pixels;
     found.colours /= points;
     return found;
 }
@@ -125,8 +129,9 @@ void expect_same_measure(const PointSource& source, const PointSource& other_sou
     const auto one = by_processors(source, camera), other = by_processors(other_source, camera),
                gpu = by_gpu(source, camera);
     const Distance by_chance = distance(*one, *other), found = distance(*one, *gpu);
-    EXPECT_LT(found.counts, 1.15 * by_chance.counts + 0.1);
-    EXPECT_GT(found.counts, 0.85 * by_chance.counts - 0.1);
+    // Five standard deviations of what chance gives of so many pixels.
+    const double spread = 5 * std::sqrt(2 / found.pixels) * std::max(by_chance.counts, 1.0);
+    EXPECT_NEAR(found.counts, by_chance.counts, spread);
     EXPECT_LT(found.colours, 1.2 * by_chance.colours + 1e-3);
 }
 
@@ -162,6 +167,36 @@ TEST(GpuPoints, ClimbFromCores) {
         " b scale: 0.4 translate: 1,1,0 chance: 3 tint: 1,0,0,0.5 }\n"
         "object top { a chance: 1\n a scale: 0.5 translate: 2,0,0 chance: 1 }",
         camera_at({1.4, 0.97, 0}, 4.1));
+}
+
+TEST(GpuPoints, AreOfSurfacesOfAllForms) {
+    Camera askew = camera_at({0, 0, 0}, 9.3);
+    askew.location = {-3, -2, -4};
+    askew.direction = glm::normalize(-askew.location);
+    askew.right = glm::normalize(glm::cross(askew.direction, Vec3(0, 1, 0)));
+    askew.up = glm::cross(askew.right, askew.direction);
+    for (const char* const form : {"triangle", "sphere", "cube", "torus", "cylinder", "cone", "frustum(0.4)",
+                                   "polygon(0,0, 1,0, 1,2, -1,1)"})
+        expect_same_measure(
+            "a.inst",
+            "canonical object part { " + std::string(form) + " scale: 2,0.5,1 tint: 0.3,0,0.1,0.5\n " + form +
+                " scale: 0.7 translate: -2,1.5,0 }\nobject top { part tint: 1,0.8,0,0.2\n part rotate: "
+                "x, 40 translate: 2,-1.5,0 }",
+            askew);
+}
+
+TEST(GpuPoints, AreOfCondensationSetsAndCycles) {
+    expect_same_measure("a.rifs",
+                        "rifs c { map a { scale 0.6 rotate <0, 0, 1> 30 tint rgb <1, 0, 0> 0.3 }\n"
+                        " map b { scale 0.5 translate <0.4, 0.1, 0> }\n"
+                        "condense sphere scale <0.3, 0.1, 0.1> translate <1, 0, 0> }",
+                        camera_at({0.6, 0.2, 0}, 1.9));
+    expect_same_measure(
+        "a.inst",
+        "canonical object inner { inner scale: 0.5\ninner scale: 0.5 translate: 1,0,0 tint: 0,1,0,0.2 }\n"
+        "canonical object outer { inner scale: 0.4\nouter scale: 0.5 translate: 0,2,0\n"
+        "cube scale: 0.2 translate: 1,1,0 }\nobject top { outer }",
+        camera_at({0.5, 1.5, 0}, 4.1));
 }
 
 TEST(GpuPoints, AreAsManyAsWereAskedFor) {

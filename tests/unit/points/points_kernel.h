@@ -21,7 +21,7 @@ using uint = std::uint32_t;
 
 inline const FlatGame* game = nullptr;
 inline Job job;
-inline bool FLAT, PERSPECTIVE, CLIMBS, LEAVES, WIDE, FORMULAS;
+inline bool FLAT, PERSPECTIVE, CLIMBS, LEAVES, WIDE, SOURCES, FORMULAS;
 inline float slots[256];
 inline uint CHANNELS;
 inline std::vector<uint> words;
@@ -46,6 +46,9 @@ inline uvec4 steps(uint i) {
 }
 inline float numbers(uint i) {
     return game->numbers[i];
+}
+inline vec4 forms(uint i) {
+    return game->forms[i];
 }
 inline float atan_of(float y, float x) {
     return std::atan2(y, x);

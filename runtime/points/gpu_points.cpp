@@ -262,7 +262,8 @@ Status GpuPoints::add_to(Accumulation& picture, FlatGame game, const Work& work)
                height = static_cast<std::uint32_t>(size.height);
     const std::uint64_t bytes_of_row =
         std::uint64_t{width} * words_of_cell(colours_.channels) * sizeof(std::uint32_t);
-    const std::uint64_t most_bytes = std::min(gpu_.info().most_buffer_bytes, gpu_.info().memory_bytes / 2);
+    const std::uint64_t most_bytes =
+        std::min({work.most_bytes, gpu_.info().most_buffer_bytes, gpu_.info().memory_bytes / 2});
     const auto rows =
         static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most_bytes / bytes_of_row, 1, height));
     Job job;

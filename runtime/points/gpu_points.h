@@ -19,7 +19,8 @@ class GpuPoints {
     struct Work {
         std::uint64_t points = 0;
         std::uint64_t seed = 0;
-        bool perspective = false; ///< places of the game are to be divided by their depth
+        std::uint64_t most_bytes = UINT64_MAX; ///< of cells; the picture is counted in bands of as many
+        bool perspective = false;              ///< places of the game are to be divided by their depth
         /// Is asked between pieces, which take some 40 ms; after it says false the status is "interrupted".
         std::function<bool(double share)> goes_on;
     };

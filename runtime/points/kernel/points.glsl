@@ -111,15 +111,15 @@ uint counted(Point point, uint material, INOUT(uvec4) random) {
         at = at / point.place.z + 0.5f * size;
     }
     if (!(at.x >= 0.0f && at.y >= 0.0f && at.x < size.x && at.y < size.y)) return 0u;
+    const uint chances = CHANNELS > 0u ? next_random(random) : 0u; // in all bands alike
     const uint row = uint(at.y) - job.window.z;
-    if (row >= job.window.w) return 0u; // in another band
+    if (row >= job.window.w) return 0u;
     const uint cell = row * job.window.x + uint(at.x);
     if (CHANNELS == 0u) {
         add_word(cell, 1u);
         return 1u;
     }
     const vec4 behind = colours(material == NO_MATERIAL ? job.start.w : material);
-    const uint chances = next_random(random);
     const uint red = level_of(point.paint.x + point.paint.w * behind.x, chances);
     if (CHANNELS == 1u) {
         add_pair(cell, red, 1u);

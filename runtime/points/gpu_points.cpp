@@ -27,9 +27,11 @@ constexpr std::size_t cells_binding = 6, totals_binding = 7, bindings = 12;
 constexpr std::uint32_t group_size = GROUP_SIZE, cells_of_thread = CELLS_OF_THREAD;
 constexpr std::size_t bytes_of_walker = 64;
 constexpr double seconds_a_piece = 0.04;
-/// Software devices end loops after some ten thousand rounds.
-constexpr std::uint64_t most_moves_by_software = 1u << 12;
-constexpr std::uint64_t most_points_a_piece = 1u << 31;
+/// Software devices end loops after some ten thousand rounds, those of climbs among them.
+constexpr std::uint64_t most_points_by_software = 1u << 8; // of a walker
+constexpr std::uint64_t most_points_a_piece = 1u << 31, points_of_first_piece = 1u << 24;
+/// Moves of all walkers until they have settled: of them a piece cannot be divided.
+constexpr std::uint64_t most_to_settle = 1u << 30, most_to_settle_by_formulas = 1u << 28;
 /// A pixel's share of all points from which on more of them may come while a cell is unpacked than it holds.
 constexpr double most_packed_share = 1.0 / 1024;
 
@@ -37,11 +39,13 @@ template<typename Value> std::span<const std::byte> bytes_of(const std::vector<V
     return std::as_bytes(std::span(values));
 }
 
-/// One for a thousand points, as far as a device is filled by them. A function of the number alone, so that
-/// all devices make the same points.
-std::uint32_t walkers_for(std::uint64_t points) {
+/// One for a thousand points, as far as a device is filled by them. All devices make the same points.
+std::uint32_t walkers_for(std::uint64_t points, const FlatGame& game) {
+    const std::uint64_t settled =
+        (game.formulas ? most_to_settle_by_formulas : most_to_settle) / (game.settling + 1);
+    const std::uint64_t most = std::min<std::uint64_t>(settled, 1u << 20);
     return static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(std::bit_ceil(points / 1024 + 1), group_size, 1u << 20));
+        std::max<std::uint64_t>(std::min(std::bit_ceil(points / 1024 + 1), most), group_size));
 }
 
 std::uint32_t groups_for(std::uint64_t threads) {
@@ -156,11 +160,10 @@ Status GpuPoints::sweep(Job job, std::uint64_t& most, std::uint64_t& sum) {
     return status;
 }
 
-Status GpuPoints::flush(Accumulation& picture, const Job& job, std::uint64_t points) {
+Status GpuPoints::flush(Accumulation& picture, const Job& job) {
     const std::uint32_t words = words_of_cell(colours_.channels), levels = levels_of(colours_.channels);
     constexpr std::size_t cells_at_once = 1u << 20;
     std::vector<std::uint32_t> some(cells_at_once * words);
-    std::uint64_t sum = 0;
     for (std::size_t first = 0; first < job.cells(); first += cells_at_once) {
         const std::size_t number = std::min(cells_at_once, job.cells() - first);
         const std::span<std::uint32_t> read(some.data(), number * words);
@@ -172,7 +175,6 @@ Status GpuPoints::flush(Accumulation& picture, const Job& job, std::uint64_t poi
             const std::uint32_t* const cell = &some[i * words];
             const std::uint32_t count = words == 1 ? cell[0] : cell[1];
             if (count == 0) continue;
-            sum += count;
             double rgb[3];
             for (int c = 0; c < 3; ++c)
                 rgb[c] = words == 4   ? static_cast<double>(cell[c == 0 ? 0 : c + 1]) / levels
@@ -183,9 +185,6 @@ Status GpuPoints::flush(Accumulation& picture, const Job& job, std::uint64_t poi
             picture.add(job.first_cell() + first + i, count, rgb);
         }
     }
-    // A number that flows over is short by 2^32, whatever else it takes along: no other one makes up for
-    // that.
-    if (sum != points) return Status::failure("GPU: a pixel has more points than its sums hold");
     return gpu_.clear(cells_binding);
 }
 
@@ -193,10 +192,9 @@ Status GpuPoints::play(Accumulation& picture, const Work& work, Job job) {
     const std::uint64_t moves_of_each = work.points / job.work[0];
     const double room = room_of_cell(colours_.channels);
     const std::uint64_t most_moves = std::max<std::uint64_t>(
-        gpu_.info().is_processor ? most_moves_by_software : most_points_a_piece / job.work[0], 1);
+        gpu_.info().is_processor ? most_points_by_software : most_points_a_piece / job.work[0], 1);
     // The first points all have room in one cell. Later pieces are larger, by where these fell.
-    auto piece = static_cast<std::uint64_t>(std::max(room / job.work[0], 1.0));
-    piece = std::min<std::uint64_t>(piece, 256);
+    std::uint64_t piece = std::max<std::uint64_t>(points_of_first_piece / job.work[0], 1);
     std::uint64_t inside = 0, made = 0; // since the last flush
     job.work[3] = JOB_BEGINS;
     for (std::uint64_t done = 0; done <= moves_of_each;) {
@@ -220,6 +218,8 @@ Status GpuPoints::play(Accumulation& picture, const Work& work, Job job) {
         done += number;
         std::uint64_t most = 0, sum = 0;
         if (Status status = sweep(job, most, sum); !status.ok()) return status;
+        // A number that flows over is short by 2^10 or 2^32, for which nothing makes up. Its colours have
+        // room for more.
         if (sum != inside) return Status::failure("GPU: a pixel has more points than its sums hold");
         if (last) break;
         job.work.w = 0;
@@ -231,11 +231,11 @@ Status GpuPoints::play(Accumulation& picture, const Work& work, Job job) {
             std::min({affordable, 8.0 * static_cast<double>(number), room / 2 / growth / job.work[0]}), 1.0,
             static_cast<double>(most_moves)));
         if (static_cast<double>(most) + growth * static_cast<double>(piece) * job.work[0] > room) {
-            if (Status status = flush(picture, job, inside); !status.ok()) return status;
+            if (Status status = flush(picture, job); !status.ok()) return status;
             inside = made = 0;
         }
     }
-    return flush(picture, job, inside);
+    return flush(picture, job);
 }
 
 bool is_sharp_in_single(const PointSource& source, const PointProjection& projection) {
@@ -267,7 +267,7 @@ Status GpuPoints::add_to(Accumulation& picture, FlatGame game, const Work& work)
     const auto rows =
         static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most_bytes / bytes_of_row, 1, height));
     Job job;
-    job.work[0] = walkers_for(work.points);
+    job.work[0] = walkers_for(work.points, game);
     job.start = {game.start.first, game.start.count, game.settling,
                  static_cast<std::uint32_t>(game.colours.size() - 1)};
     job.orbit = {game.links.size() - 1, game.core_colour, game.first_form, 0};

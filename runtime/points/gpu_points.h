@@ -52,9 +52,9 @@ class GpuPoints {
     Status load(const FlatGame& game, const Work& work, std::uint32_t walkers, std::size_t cells);
     /// Points of rows of the picture.
     Status play(Accumulation& picture, const Work& work, Job job);
-    /// Takes the cells into the picture, which must hold `points`.
-    Status flush(Accumulation& picture, const Job& job, std::uint64_t points);
-    /// The largest number of points in a cell.
+    /// Takes the cells into the picture.
+    Status flush(Accumulation& picture, const Job& job);
+    /// The largest number of points in a cell, and all together.
     Status sweep(Job job, std::uint64_t& most, std::uint64_t& sum);
     Status run(const Job& job, std::uint32_t groups, double& seconds);
 

@@ -1,4 +1,5 @@
-// The formulas of orbits, by steps (compiler/syntax/steps/expression_steps.h). steps(): the operation, 256 if an expression
+// The formulas of orbits, by steps, whose operations have the numbers of ExpressionStep (compiler/syntax/steps). steps(): the
+// operation, 256 if an expression
 // ends there, and in the high half the slot of its result; two halves each for four operands; pieces of a table.
 
 #define IS_NUMBER 0x8000u

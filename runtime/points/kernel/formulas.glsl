@@ -1,6 +1,6 @@
-// The formulas of orbits, by steps, whose operations have the numbers of ExpressionStep (compiler/syntax/steps). steps(): the
-// operation, 256 if an expression
-// ends there, and in the high half the slot of its result; two halves each for four operands; pieces of a table.
+// The formulas of orbits, by steps, whose operations have the numbers of ExpressionStep (compiler/syntax/steps).
+// steps(): the operation, 256 if an expression ends there, and in the high half the slot of its result; two halves each
+// for four operands; pieces of a table.
 
 #define IS_NUMBER 0x8000u
 #define DEGREES 57.29577951308232f

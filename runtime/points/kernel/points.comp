@@ -105,7 +105,7 @@ void sweep() {
     for (uint k = 0u; k < CELLS_OF_THREAD; ++k) {
         const uint cell = first + k * GROUP_SIZE;
         if (cell >= job.more.z) break;
-        uint number = CHANNELS == 0u ? words[cell] : CHANNELS == 1u ? words[2u * cell + 1u] : words[4u * cell + 1u];
+        uint number = words[CHANNELS == 0u ? cell : CHANNELS == 1u ? 2u * cell + 1u : 4u * cell + 1u];
 #ifdef ATOMICS_64
         if (PACKS && packed_cells[cell] != uint64_t(0)) number += unpack_cell(cell);
 #endif

@@ -72,18 +72,26 @@ function(graftal_layer folder)
   target_precompile_headers(${name} REUSE_FROM graftal_headers)
 endfunction()
 
-# graftal_kernel(LAYER FILE.comp): what GPUs run of a layer, as an array FILE_spirv in the header FILE_spirv.h.
+# graftal_kernel(LAYER FILE.comp [NAME DEFINITION]): what GPUs run of a layer, as an array NAME_spirv in the header
+# NAME_spirv.h; NAME is FILE unless it is given.
 function(graftal_kernel folder kernel)
   graftal_targets(layer ${folder})
   get_filename_component(name ${kernel} NAME_WE)
+  if(ARGC GREATER 2)
+    set(name ${ARGV2})
+  endif()
   set(header ${PROJECT_BINARY_DIR}/kernels/${folder}/${name}_spirv.h)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/kernels/${folder})
   file(GLOB_RECURSE texts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/*/*.glsl)
   add_custom_command(OUTPUT ${header} VERBATIM
-    COMMAND ${GRAFTAL_GLSLANG} --quiet --target-env vulkan1.2 -S comp -I${PROJECT_SOURCE_DIR} --vn ${name}_spirv
+    COMMAND ${GRAFTAL_GLSLANG} --quiet --target-env vulkan1.2 -S comp -I${PROJECT_SOURCE_DIR} ${ARGV3} --vn ${name}_spirv
             -o ${header} ${PROJECT_SOURCE_DIR}/${kernel}
     DEPENDS ${PROJECT_SOURCE_DIR}/${kernel} ${texts})
-  add_custom_target(graftal_kernels DEPENDS ${header}) # which tools/tidy makes, too
+  if(NOT TARGET graftal_kernels) # which tools/tidy makes, too
+    add_custom_target(graftal_kernels)
+  endif()
+  add_custom_target(graftal_kernel_${name} DEPENDS ${header})
+  add_dependencies(graftal_kernels graftal_kernel_${name})
   target_sources(${layer} PRIVATE ${header})
   target_include_directories(${layer} PRIVATE ${PROJECT_BINARY_DIR}/kernels)
 endfunction()

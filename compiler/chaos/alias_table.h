@@ -25,13 +25,14 @@ class AliasTables {
         return static_cast<std::uint32_t>(bits) < entry.own ? entry.choice : entry.alias;
     }
 
-  private:
     struct Entry {
         std::uint32_t own = UINT32_MAX; ///< share of the slot, in 2^-32, that is its own choice
         std::uint32_t choice = 0;
         std::uint32_t alias = 0;
     };
+    const std::vector<Entry>& entries() const { return entries_; }
 
+  private:
     std::vector<Entry> entries_;
 };
 

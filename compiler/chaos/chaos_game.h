@@ -43,6 +43,7 @@ class ChaosGame {
 
   private:
     friend class ChaosPlayer;
+    friend struct FlatGame;
     class Builder;
     static constexpr std::uint32_t none = UINT32_MAX;
 

@@ -6,7 +6,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/graph/run.h"
 #include "compiler/primitives/primitive_cache.h"
 #include "compiler/primitives/support_points.h"
 #include "compiler/primitives/tapered.h"
@@ -17,11 +16,6 @@ namespace graftal {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-/// The matrix of cofactors: |cofactors n| is how much area with the normal n grows. Also where A is singular.
-Mat3 cofactors_of(const Mat3& a) {
-    return {glm::cross(a[1], a[2]), glm::cross(a[2], a[0]), glm::cross(a[0], a[1])};
-}
 
 /// Evenly spread over the cube: steps by powers of 1/x, x^4 = x + 1.
 Vec3 spread_choice(int i) {
@@ -47,6 +41,10 @@ const Normals& spread_normals(const Primitive& primitive) {
 }
 
 } // namespace
+
+Mat3 cofactors_of(const Mat3& a) {
+    return {glm::cross(a[1], a[2]), glm::cross(a[2], a[0]), glm::cross(a[0], a[1])};
+}
 
 PlacedSurface::PlacedSurface(const Primitive& primitive, const Affine& world_from_primitive)
     : primitive_(primitive), map_(world_from_primitive), cofactors_(cofactors_of(map_.linear)) {
@@ -79,20 +77,24 @@ double slant_of(const RunItem& item) {
     return std::hypot((1 - item.shape.top_radius()) * item.radius, glm::length(item.axis));
 }
 
-double area_of(const RunItem& item) {
-    const double r = item.radius, ball = 4 * pi * r * r;
-    if (item.shape.is_sphere()) return ball;
-    const double top = item.shape.top_radius();
-    return pi * r * r * (1 + top * top) + pi * r * (1 + top) * slant_of(item) + (item.ball ? ball : 0);
+double whole_of(const ItemAreas& areas) {
+    return areas.body + areas.ball;
 }
 
 } // namespace
+
+ItemAreas areas_of(const RunItem& item) {
+    const double r = item.radius, ball = 4 * pi * r * r;
+    if (item.shape.is_sphere()) return {ball, 0};
+    const double top = item.shape.top_radius();
+    return {pi * r * r * (1 + top * top) + pi * r * (1 + top) * slant_of(item), item.ball ? ball : 0};
+}
 
 std::vector<double> areas_of_items(const PackedEdges& edges) {
     std::vector<double> areas;
     areas.reserve(edges.item_count());
     for (std::size_t i = 0; i < edges.item_count(); ++i)
-        areas.push_back(area_of((*edges.run)[i]));
+        areas.push_back(whole_of(areas_of((*edges.run)[i])));
     return areas;
 }
 
@@ -100,7 +102,7 @@ Vec3 point_of_item(const PackedEdges& edges, std::size_t number, RandomStream& r
     const RunItem& item = (*edges.run)[number];
     const double r = item.radius, top = item.shape.top_radius();
     const double u = random.unit(), v = random.unit();
-    double at = random.unit() * area_of(item);
+    double at = random.unit() * whole_of(areas_of(item));
     const double ball = 4 * pi * r * r;
     if (item.shape.is_sphere()) return item.base + r * on_sphere(u, v);
     if (item.ball && at < ball) return item.base + item.axis + r * on_sphere(u, v);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
+#include "compiler/graph/run.h"
 #include "compiler/support/counter_random.h"
 
 namespace graftal {
@@ -23,6 +24,10 @@ class RandomStream {
     std::uint64_t count_ = 0;
 };
 
+/// The matrix of cofactors: |cofactors n| is how much area with the unit normal n grows. Also of singular
+/// ones.
+Mat3 cofactors_of(const Mat3& a);
+
 /// The image of a primitive under an affine map, as a set to take random points of: evenly over its
 /// surface, however the map stretches it. Requires a primitive that is bounded: no plane.
 class PlacedSurface {
@@ -35,6 +40,8 @@ class PlacedSurface {
     Vec3 point(RandomStream& random) const;
 
   private:
+    friend struct FlatGame;
+
     Primitive primitive_;
     Affine map_;
     Mat3 cofactors_;     ///< turn a normal into the image's, as long as area grows there
@@ -42,7 +49,12 @@ class PlacedSurface {
     double area_;
 };
 
-/// The areas of what the items of packed edges draw, their balls included; exact.
+/// The areas of what an item draws: its body, and the ball at its far end; exact.
+struct ItemAreas {
+    double body = 0, ball = 0;
+};
+ItemAreas areas_of(const RunItem& item);
+/// Their sums, of the items of packed edges.
 std::vector<double> areas_of_items(const PackedEdges& edges);
 /// A point of one of them, evenly spread.
 Vec3 point_of_item(const PackedEdges& edges, std::size_t number, RandomStream& random);

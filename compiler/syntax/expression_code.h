@@ -62,6 +62,8 @@ class ExpressionCode {
     };
 
     class Compiler;
+    class StepWriter;
+    friend struct ExpressionSteps;
 
     explicit ExpressionCode(const Expression& source) : source_(&source) {}
     double value(std::uint32_t node, const Row& row) const;

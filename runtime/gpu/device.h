@@ -16,6 +16,8 @@ struct GpuInfo {
     std::string name;
     bool is_processor = false; ///< it is the machine's processors, by software
     std::uint64_t memory_bytes = 0;
+    std::uint64_t most_buffer_bytes = 0;
+    bool atomics_64 = false; ///< kernels may add to whole numbers of 64 bits that several threads share
 };
 
 /// The devices, real ones first. Empty where there is no loader, no driver or no device; `why` then says
@@ -44,8 +46,10 @@ class Gpu {
 
     /// A new buffer at the next binding, of zeros beyond `bytes`; at least one word.
     Status add_buffer(std::span<const std::byte> bytes, std::size_t size = 0);
-    /// Reads a buffer back.
-    Status read(std::size_t binding, std::span<std::byte> bytes);
+    /// Fills a buffer with zeros.
+    Status clear(std::size_t binding);
+    /// Reads a buffer back, from that byte on.
+    Status read(std::size_t binding, std::span<std::byte> bytes, std::size_t from = 0);
 
     /// Runs the kernel in that many groups, and waits for it. `seconds`: that it took, by the device's clock where
     /// it has one.

@@ -9,6 +9,7 @@
     FUNCTION(vkCreateInstance)                                                                               \
     FUNCTION(vkDestroyInstance)                                                                              \
     FUNCTION(vkEnumeratePhysicalDevices)                                                                     \
+    FUNCTION(vkGetPhysicalDeviceFeatures2)                                                                   \
     FUNCTION(vkGetPhysicalDeviceProperties)                                                                  \
     FUNCTION(vkGetPhysicalDeviceMemoryProperties)                                                            \
     FUNCTION(vkGetPhysicalDeviceQueueFamilyProperties)                                                       \

@@ -28,6 +28,14 @@ class Accumulation {
             cell.rgb[c] += level(rgb[c]);
     }
 
+    /// Adds many points at once; `rgb`: the sums of their colours.
+    void add(std::size_t pixel, std::uint64_t count, const double rgb[3]) {
+        Cell& cell = cells_[pixel];
+        cell.count += count;
+        for (int c = 0; c < 3; ++c)
+            cell.rgb[c] += static_cast<std::uint64_t>(std::max(0.0, 65535 * rgb[c] + 0.5));
+    }
+
     void prefetch(std::size_t pixel) const { __builtin_prefetch(&cells_[pixel], 1); }
 
     /// add() where several threads add to one picture.

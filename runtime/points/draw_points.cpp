@@ -17,11 +17,13 @@
 #include "runtime/image/develop.h"
 #include "runtime/points/accumulation.h"
 #include "runtime/points/card.h"
+#include "runtime/points/gpu_points.h"
 #include "runtime/points/orbit_source.h"
 #include "runtime/points/ply_file.h"
 #include "runtime/points/point_projection.h"
 #include "runtime/points/point_source.h"
 #include "runtime/points/shares.h"
+#include "runtime/render/gpu_engine.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
 #include "runtime/system/file.h"
@@ -118,6 +120,34 @@ class Canvas {
         }
     }
 
+    /// Adds the points of a source, as a graphics card makes them.
+    Status add(const PointSource& source, const PointWork& work, PointsReport& report) {
+        std::string why = options_.device ? "" : why_no_card();
+        if (why.empty() && !is_sharp_in_single(source, projection_))
+            why = "single precision does not tell places so near apart";
+        std::optional<FlatGame> game;
+        if (why.empty()) game = source.flat(projection_.picture_from_world(), label_colour(), why);
+        if (!game) return Status::failure(why);
+        Status status;
+        const std::unique_ptr<Gpu> gpu = Gpu::open(options_.device.value_or(0), status);
+        if (!gpu) return status;
+        auto counted = std::make_unique<Accumulation>(size_);
+        GpuPoints points(*gpu);
+        status = points.add_to(*counted, *game,
+                               {.points = work.points,
+                                .seed = options_.compile.lower.seed.value_or(0),
+                                .perspective = projection_.perspective(),
+                                .goes_on = [&](double share) {
+                                    if (work.on_progress) work.on_progress(share);
+                                    return !work.cancelled();
+                                }});
+        if (!status.ok()) return status;
+        copies_.front() = std::move(counted);
+        report.seconds = points.seconds();
+        report.device = gpu->info().name;
+        return {};
+    }
+
     const Accumulation& sum() {
         std::unique_ptr<Accumulation>& all = copies_.front();
         if (!all) all = std::make_unique<Accumulation>(size_);
@@ -135,6 +165,12 @@ class Canvas {
     }
 
   private:
+    LabelColour label_colour() const {
+        if (options_.colour == PointColour::tint) return {};
+        if (options_.colour == PointColour::density) return [](std::uint32_t) { return Rgb(0.0); };
+        return [this](std::uint32_t label) { return map_colours_[label]; };
+    }
+
     static constexpr std::size_t most_at_once = 512;
     static constexpr std::size_t beside = SIZE_MAX; ///< the picture
 
@@ -216,20 +252,28 @@ Status place_points(const PointSource& source, const View& view, const PointsOpt
     const PointWork work = work_for(options, cancel);
     Canvas canvas(view, options, report.maps);
     report.points = work.points;
-    const Stopwatch watch;
     if (options.take) {
+        const Stopwatch watch;
         status = take_cloud(source, work, canvas, options.take);
         report.seconds = watch.seconds();
         report.inside = work.points;
         return status;
     }
     if (is_cloud_name(options.output)) {
+        const Stopwatch watch;
         status = write_ply(options.output, source, work, options.metadata,
                            [&](const ChaosPoint& point) { return canvas.colour_of(point); });
         report.seconds = watch.seconds();
         report.inside = work.points;
         return status;
     }
+    if (options.gpu) {
+        status = canvas.add(source, work, report);
+        if (status.ok()) return write_picture(canvas, view, options, card, report);
+        if (cancel.raised()) return status;
+        report.not_gpu = status.message();
+    }
+    const Stopwatch watch;
     const bool complete = take_points(
         source, work, [&](int worker, std::span<const ChaosPoint> points) { canvas.take(worker, points); });
     report.seconds = watch.seconds();
@@ -237,6 +281,14 @@ Status place_points(const PointSource& source, const View& view, const PointsOpt
 }
 
 namespace {
+
+/// Ends the making of points: how long it took, and why a card did not make them.
+void note_processors(const Span& span, const PointsReport& report, Compilation& compilation) {
+    compilation.times.push_back({"points", report.seconds});
+    if (!report.not_gpu.empty())
+        compilation.diagnostics.note(
+            span, fmt::format("the processors make these points, not the GPU: {}", report.not_gpu));
+}
 
 Status place_card(const PointSource& source, const Box& box, const std::vector<Material>& materials,
                   const PointsOptions& options, const CancelFlag& cancel, PointsReport& report) {
@@ -266,7 +318,7 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
     compilation.status = options.card.empty() ? place_points(source, view, options, nullptr, cancel, report)
                                               : place_card(source, box, {}, options, cancel, report);
     if (source.report(compilation.diagnostics)) compilation.status = Status(); // which is why it was given up
-    compilation.times.push_back({"points", report.seconds});
+    note_processors(model.span, report, compilation);
     if (!compilation.status.ok() || compilation.diagnostics.has_errors()) return std::nullopt;
     return report;
 }
@@ -307,7 +359,7 @@ std::optional<PointsReport> draw_points(PictureSession& session, const PointsOpt
     compilation.status = options.card.empty()
                              ? place_points(source, viewed->view, options, nullptr, cancel, report)
                              : place_card(source, box, graph.materials, options, cancel, report);
-    compilation.times.push_back({"points", report.seconds});
+    note_processors(graph.objects[graph.root].span, report, compilation);
     if (!compilation.status.ok()) return std::nullopt;
     return report;
 }

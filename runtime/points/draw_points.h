@@ -29,7 +29,9 @@ struct PointsOptions {
     std::string card;                    ///< `.inst` file of a card with the picture (card.h); empty: none
     PointColour colour = PointColour::tint;
     Tone tone;
-    int threads = 0; ///< 0: all processors
+    int threads = 0;                   ///< 0: all processors
+    bool gpu = false;                  ///< a picture's points are made by a graphics card, if it can
+    std::optional<std::size_t> device; ///< a number of gpu_devices(); null: the first card
     std::function<void(double fraction)> on_progress;
 };
 
@@ -37,7 +39,9 @@ struct PointsReport {
     std::uint64_t points = 0;
     std::uint64_t inside = 0; ///< of the picture
     std::uint32_t maps = 0;
-    double seconds = 0; ///< of making points
+    double seconds = 0;  ///< of making points
+    std::string device;  ///< name of the one that made them; empty: the processors
+    std::string not_gpu; ///< why these did, though PointsOptions::gpu was asked for
 };
 
 /// Number of points that draw_points() will take.

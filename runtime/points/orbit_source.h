@@ -17,6 +17,8 @@ class OrbitSource : public PointSource {
     OrbitSource(const OrbitModel& model, std::uint64_t seed);
     std::unique_ptr<PointStream> stream(std::uint64_t number) const override;
     bool single() const override { return model_.maps.size() == 1; }
+    std::optional<FlatGame> flat(const Affine& seen_from_world, const LabelColour& colour_of,
+                                 std::string& why) const override;
 
     /// The box of the first points of the first sequence.
     Box survey(std::uint64_t points) const;

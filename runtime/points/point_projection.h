@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "compiler/scene/scene.h"
 
@@ -41,6 +42,18 @@ class PointProjection {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
                static_cast<std::size_t>(x);
     }
+
+    /// Where points are as the picture has them: of parallel rays x and y in pixels; else these must be
+    /// divided by z, the depth, and are from the middle on.
+    Affine picture_from_world() const {
+        Affine turned;
+        turned.linear = glm::transpose(Mat3(across_, down_, direction_));
+        turned.translation = -(turned.linear * eye_);
+        if (!perspective_) turned.translation += 0.5 * Vec3(size_.width, size_.height, 0);
+        return turned;
+    }
+    bool perspective() const { return perspective_; }
+    ImageSize size() const { return size_; }
 
   private:
     Vec3 eye_, direction_, across_, down_;

@@ -3,10 +3,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "compiler/chaos/chaos_game.h"
+#include "compiler/chaos/flat_game.h"
 
 namespace graftal {
 
@@ -26,6 +29,9 @@ class PointSource {
     virtual std::unique_ptr<PointStream> stream(std::uint64_t number) const = 0;
     /// Whether there is one sequence only, number 0: each point follows from the one before.
     virtual bool single() const { return false; }
+    /// The source for graphics cards (FlatGame::of()); nothing, and `why`, where they cannot make its points.
+    virtual std::optional<FlatGame> flat(const Affine& seen_from_world, const LabelColour& colour_of,
+                                         std::string& why) const = 0;
 };
 
 /// Random iteration on a graph. The game must outlive this.
@@ -33,6 +39,10 @@ class ChaosSource : public PointSource {
   public:
     ChaosSource(const ChaosGame& game, std::uint64_t seed) : game_(game), seed_(seed) {}
     std::unique_ptr<PointStream> stream(std::uint64_t number) const override;
+    std::optional<FlatGame> flat(const Affine& seen_from_world, const LabelColour& colour_of,
+                                 std::string& why) const override {
+        return FlatGame::of(game_, seen_from_world, colour_of, why);
+    }
 
   private:
     const ChaosGame& game_;

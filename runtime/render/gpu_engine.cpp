@@ -168,16 +168,6 @@ void note_native(const PreparedView& prepared, std::string_view why, Compilation
                                  fmt::format("the processors draw this picture, not the GPU: {}", why));
 }
 
-/// Why there is no graphics card; empty where there is one. Nobody who asks for a card waits for the
-/// processors to play one.
-std::string why_no_card() {
-    std::string why;
-    const std::vector<GpuInfo> devices = gpu_devices(&why);
-    if (devices.empty() || !devices.front().is_processor) return why;
-    return fmt::format("there is no graphics card ('--device 0' draws by {}, a driver that takes far longer)",
-                       devices.front().name);
-}
-
 std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& options,
                                Compilation& compilation) {
     const Stopwatch preparing;
@@ -213,6 +203,14 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
 }
 
 } // namespace
+
+std::string why_no_card() {
+    std::string why;
+    const std::vector<GpuInfo> devices = gpu_devices(&why);
+    if (devices.empty() || !devices.front().is_processor) return why;
+    return fmt::format("there is no graphics card ('--device 0' draws by {}, a driver that takes far longer)",
+                       devices.front().name);
+}
 
 bool has_gpu() {
     static const bool found = [] {

@@ -75,6 +75,42 @@ TEST_F(GpuFaults, WithoutALoaderOrADeviceTheProcessorsDrawToo) {
     EXPECT_THAT(missing.err, HasSubstr("not the GPU: GPU: no Vulkan loader (libvulkan.so.1) is installed"));
 }
 
+/// A device that fails, or cannot do it, leaves all points to the processors.
+TEST_F(GpuFaults, OfPointsAreNotesToo) {
+    const auto points = [&](const std::string& fault, const std::string& words = "m.rifs") {
+        shell("rm -f a.png");
+        return shell("LD_LIBRARY_PATH=$PWD/../loader VULKAN_FAULT=" + fault +
+                     " timeout 100 \"$graftal\" points --engine gpu " + words +
+                     " --size 16x12 --points 100000 -o a.png");
+    };
+    const RunResult drawn = points("", "m.rifs --device 0");
+    EXPECT_THAT(drawn.err, Not(HasSubstr("not the GPU")));
+    EXPECT_THAT(drawn.err, HasSubstr("million per second by llvmpipe"));
+    write("o.rifs", "orbit o { x = 1 - y + abs(x)  y = x }\n");
+    const struct {
+        std::string fault, words, said;
+    } faults[] = {
+        {"vkCreateDevice:1:-3", "m.rifs --device 0", "GPU: opening the device failed (Vulkan's result -3)"},
+        {"vkAllocateMemory:8:-2", "m.rifs --device 0", "the device has no memory left"},
+        {"vkCreateComputePipelines:1:-1", "m.rifs --device 0", "making the kernel: no memory is left"},
+        {"vkQueueSubmit:20:-4", "m.rifs --device 0", "running the kernel: the device was lost"},
+        {"vkCreateInstance:1:-9", "m.rifs --device 0", "GPU: no driver of Vulkan 1.2 is installed"},
+        {"", "m.rifs --device 9", "GPU: there is no device number 9"},
+        {"", "m.rifs", "there is no graphics card ('--device 0' draws by llvmpipe"},
+        {"", "m.rifs --device 0 --camera 'look_at=0.3,0.3,0 width=1e-6'", "single precision"},
+        {"", "o.rifs --device 0", "one map has one orbit"},
+    };
+    for (const auto& [fault, words, said] : faults) {
+        const RunResult result = points(fault, words);
+        EXPECT_EQ(result.status, 0) << fault << words << result.err;
+        EXPECT_THAT(result.err, HasSubstr("the processors make these points, not the GPU: "))
+            << fault << words;
+        EXPECT_THAT(result.err, HasSubstr(said)) << fault << words;
+        EXPECT_EQ(picture("a.png").width, 16) << fault << words;
+    }
+    EXPECT_EQ(points("vkCreateInstance:1:-9", "m.rifs --engine auto").status, 0);
+}
+
 TEST_F(GpuFaults, AMillionInstancesAreDrawnOrLeftToTheProcessors) {
     write("cells.inst",
           "canonical object cell { cube scale: 0.3 }\nobject many { scatter: cell count: 1000000 "

@@ -37,6 +37,7 @@ TEST_F(CommandLine, PointsUsage) {
         {"points a.rifs -o a.ply --color density", "a cloud has no pixels to count points in"},
         {"points -", "standard input has no name"},
         {"points a.rifs --error 1", "--error"},
+        {"points a.rifs --engine povray", "--engine: 'povray' is not auto, native or gpu"},
         {"collage a.png", "Try 'graftal collage --help'"},
         {"collage a.png b.rifs --threshold 2", "--threshold: '2' is not a number from 0 to 1"},
         {"collage a.png b.rifs --size 10x10", "--size"},

@@ -2,6 +2,7 @@
 
 #include "compiler/detail/coarser.h"
 #include "runtime/points/draw_points.h"
+#include "runtime/render/gpu_engine.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
@@ -22,6 +23,8 @@ PointsOptions points_options(const Options& options) {
     points.tone = options.points.tone;
     points.card = options.points.card;
     points.threads = options.render.threads;
+    points.gpu = options.engine->name == gpu_engine.name;
+    points.device = options.render.device;
     return points;
 }
 
@@ -41,7 +44,8 @@ std::string done_text(const Options& options, const PointsReport& report) {
         text += fmt::format(", {:.3g} % of them in the picture",
                             100 * static_cast<double>(report.inside) / static_cast<double>(report.points));
     const double millions = 1e-6 * static_cast<double>(report.points) / std::max(report.seconds, 1e-9);
-    return text + fmt::format(", in {:.2f} s, {:.3g} million per second\n", report.seconds, millions);
+    text += fmt::format(", in {:.2f} s, {:.3g} million per second", report.seconds, millions);
+    return text + (report.device.empty() ? "\n" : fmt::format(" by {}\n", report.device));
 }
 
 } // namespace
@@ -50,7 +54,7 @@ int run_points(const Options& options) {
     ProgressBar bar(!options.quiet);
     PointsOptions points = points_options(options);
     points.on_progress = [&](double fraction) { bar.show("points", fraction); };
-    if (!options.quiet) say_what_points_take(points);
+    if (!options.quiet && !points.gpu) say_what_points_take(points);
     Compilation compilation;
     bar.show("compiling...");
     CommandSession session(options, options.operands.front());

@@ -11,6 +11,8 @@
 #include "runtime/inverse/lsystem/drawing_file.h"
 #include "runtime/points/card.h"
 #include "runtime/points/draw_points.h"
+#include "runtime/render/gpu_engine.h"
+#include "runtime/render/native_engine.h"
 #include "tools/graftal/options/shared.h"
 #include "tools/graftal/options/values.h"
 
@@ -37,6 +39,12 @@ void add_positive(CLI::App& app, const std::string& name, const std::string& hel
         value = *number;
     };
     app.add_option_function<std::string>(name, set, help)->type_name("X")->take_last();
+}
+
+/// The engine of points by this name; null: no such one.
+std::optional<const Engine*> points_engine(const std::string& name) {
+    if (name != auto_engine && name != native_engine.name && name != gpu_engine.name) return std::nullopt;
+    return find_engine(name);
 }
 
 /// Adds the options that make colours and light of the measure.
@@ -92,6 +100,13 @@ void add_points_options(CLI::App& app, Options& options) {
                                          "Number of points (default: 100 per pixel; for a cloud 1e6)")
         ->type_name("N")
         ->take_last();
+    add_value(app, "--engine", "auto|native|gpu",
+              "What makes the points: native, the processors; gpu, the graphics card (default auto: a card "
+              "if there "
+              "is one)",
+              "auto, native or gpu", points_engine,
+              [&options](const Engine* engine) { options.engine = engine; });
+    add_device(app, options);
     const auto colour = [&settings](const std::string& text) {
         static const std::map<std::string, PointColour> colours = {
             {"tint", PointColour::tint}, {"map", PointColour::map}, {"density", PointColour::density}};

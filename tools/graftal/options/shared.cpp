@@ -322,6 +322,14 @@ void add_bits(CLI::App& app, Options& options) {
               [&options](SampleFormat format) { options.render.format = format; });
 }
 
+void add_device(CLI::App& app, Options& options) {
+    app.add_option("--device", options.render.device,
+                   "Graphics card of '--engine gpu', by its number in 'graftal version --json' (default: the "
+                   "first card)")
+        ->type_name("N")
+        ->take_last();
+}
+
 void add_drawing(CLI::App& app, Options& options) {
     const auto engine = [&options](const std::string& text) {
         options.engine = find_engine(text);
@@ -332,11 +340,7 @@ void add_drawing(CLI::App& app, Options& options) {
     app.add_option_function<std::string>("--engine", engine, engines_text())
         ->type_name(engine_names("|"))
         ->take_last();
-    app.add_option("--device", options.render.device,
-                   "Graphics card of '--engine gpu', by its number in 'graftal version --json' (default: the "
-                   "first card)")
-        ->type_name("N")
-        ->take_last();
+    add_device(app, options);
     app.add_option("--samples", options.render.samples,
                    "Samples per pixel under soft light; overrides --quality")
         ->check(CLI::Range(1, most_samples_a_pixel).description(""))

@@ -48,6 +48,8 @@ void add_view(CLI::App& app, Options& options);
 void add_irradiance(CLI::App& app, Options& options);
 /// `--bits`, of a PNG for people.
 void add_bits(CLI::App& app, Options& options);
+/// `--device`, of a graphics card.
+void add_device(CLI::App& app, Options& options);
 /// Options of commands that make pictures.
 void add_drawing(CLI::App& app, Options& options);
 

@@ -40,9 +40,22 @@ void sort_along(int axis, std::span<FlatItem> items) {
     });
 }
 
+std::array<Group, 2> halves_of(const Group& group) {
+    const std::size_t half = group.items.size() / 2;
+    return {group_of(group.items.first(half)), group_of(group.items.subspan(half))};
+}
+
+/// So many items are halved where they lie: to look for the best place would take longer than it saves.
+constexpr std::size_t most_sorted = 1 << 14;
+
 /// The two parts of a group for which rays are tested least.
 std::array<Group, 2> split(const Group& group) {
     const std::span<FlatItem> items = group.items;
+    if (items.size() > most_sorted) {
+        const Vec3 size = group.box.size();
+        sort_along(size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2, items);
+        return halves_of(group);
+    }
     std::vector<double> rest(items.size() + 1);
     double least = std::numeric_limits<double>::infinity();
     std::size_t place = items.size() / 2;
@@ -82,11 +95,7 @@ class Builder {
             const auto largest = std::ranges::max_element(groups, larger);
             if (largest->items.size() < 2) break;
             // Coincident items make lopsided trees: halves end after the logarithm of their number.
-            const std::size_t half = largest->items.size() / 2;
-            const auto [first, second] = depth < most_depth
-                                             ? split(*largest)
-                                             : std::array{group_of(largest->items.first(half)),
-                                                          group_of(largest->items.subspan(half))};
+            const auto [first, second] = depth < most_depth ? split(*largest) : halves_of(*largest);
             *largest = first;
             groups.push_back(second);
         }

@@ -2,7 +2,7 @@
 //   gpu_bench DEVICE WIDTHxHEIGHT        reads jobs from standard input, one a line: MODEL STEPS ZOOM SAMPLES
 // STEPS is a number, or - for as deep as the error asks. It prints a line of JSON for each job: bytes of the model, and the
 // milliseconds of the device for one ray a pixel without light, for one sample of light and for SAMPLES of them, medians of
-// some runs after the device has warmed up, with the rays of a sample.
+// some runs after the device has warmed up, with the rays of a sample. Pictures on surfaces are left out.
 
 #include <algorithm>
 #include <cstdio>
@@ -20,7 +20,6 @@
 #include "compiler/session/stages.h"
 #include "runtime/gpu/gpu_picture.h"
 #include "runtime/system/disk_files.h"
-#include "runtime/trace/model/trace_model.h"
 
 namespace graftal {
 namespace {
@@ -86,12 +85,12 @@ Status measure(Gpu& gpu, ImageSize size, const Job& job, nlohmann::json& row) {
     const auto viewed = session.viewed(options, compilation);
     const auto prepared = viewed ? session.prepared(options, compilation) : nullptr;
     if (!prepared) return Status::failure(compilation.diagnostics.render(compilation.sources));
-    const TraceModel model(prepared, viewed->view, resolved(options.detail, *viewed));
+    const View& view = viewed->view;
     std::string why;
     Sampling soft;
     soft.most_samples = static_cast<int>(job.samples);
     const std::optional<FlatModel> flat =
-        flat_model({*prepared, model.view, model.options, model.textures, {}, soft}, why);
+        flat_model({*prepared, view, resolved(options.detail, *viewed), ModelTextures(), {}, soft}, why);
     if (!flat) return Status::failure("the kernel does not know " + why);
     row["bytes"] = flat->bytes();
     const Tile window{0, 0, size.width, size.height};
@@ -127,7 +126,7 @@ Status measure(Gpu& gpu, ImageSize size, const Job& job, nlohmann::json& row) {
     picture.channels = 3;
     picture.pixels.resize(3 * window.pixels());
     GpuPicture::Seen seen;
-    if (status.ok()) status = light.read(model.view.film, 0, picture, seen);
+    if (status.ok()) status = light.read(view.film, 0, picture, seen);
     const double samples = seen.samples;
     row["rays"] = seen.rays / std::max(samples, 1.0);
     row["steps"] = seen.steps / std::max(samples, 1.0);

@@ -278,8 +278,8 @@ Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std:
     const VkDevice device = parts_->device;
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (std::size_t i = 0; i < buffers; ++i)
-        bindings.push_back({static_cast<std::uint32_t>(i), parts_->kind_of(i), 1,
-                            VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+        bindings.push_back(
+            {static_cast<std::uint32_t>(i), parts_->kind_of(i), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
     VkDescriptorSetLayoutCreateInfo of_set{};
     of_set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
     of_set.bindingCount = static_cast<std::uint32_t>(bindings.size());
@@ -343,7 +343,8 @@ Status Gpu::add_buffer(std::span<const std::byte> bytes, std::size_t size) {
     if (whole > parts.most_buffer_bytes)
         return Status::failure(fmt::format("GPU: the device takes no buffer of {} bytes", whole));
     Buffer& buffer = parts.buffers.emplace_back();
-    constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+    constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     if (Status status = parts.make_buffer(whole, usage, false, buffer); !status.ok()) return status;
     if (bytes.size() < whole)
@@ -386,7 +387,8 @@ Status Gpu::run(std::span<const std::byte> push, std::uint32_t groups, double& s
     const auto begin = std::chrono::steady_clock::now();
     const auto stamp = [&](std::uint32_t number) {
         if (parts.clock)
-            api.vkCmdWriteTimestamp(parts.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, parts.clock, number);
+            api.vkCmdWriteTimestamp(parts.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, parts.clock,
+                                    number);
     };
     Status status = parts.submit([&] {
         parts.wait_for_writes();
@@ -403,8 +405,8 @@ Status Gpu::run(std::span<const std::byte> push, std::uint32_t groups, double& s
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     std::array<std::uint64_t, 2> ticks{};
     if (status.ok() && parts.clock &&
-        api.vkGetQueryPoolResults(parts.device, parts.clock, 0, 2, sizeof ticks, ticks.data(), sizeof ticks[0],
-                                  VK_QUERY_RESULT_64_BIT) == VK_SUCCESS)
+        api.vkGetQueryPoolResults(parts.device, parts.clock, 0, 2, sizeof ticks, ticks.data(),
+                                  sizeof ticks[0], VK_QUERY_RESULT_64_BIT) == VK_SUCCESS)
         seconds = static_cast<double>(ticks[1] - ticks[0]) * parts.tick_seconds;
     return status;
 }

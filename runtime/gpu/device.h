@@ -38,8 +38,8 @@ class Gpu {
 
     /// Makes a kernel of a SPIR-V text whose entry is main(), with `buffers` storage buffers at the bindings
     /// from 0 on, `push_bytes` of push constants, and values of its constants. It takes the place of the
-    /// one before, whose buffers go. `uniform`: the binding of a buffer of at most 16 KiB that is read alike by
-    /// all, if there is one.
+    /// one before, whose buffers go. `uniform`: the binding of a buffer of at most 16 KiB that is read alike
+    /// by all, if there is one.
     static constexpr std::size_t no_binding = SIZE_MAX;
     Status load(std::span<const std::uint32_t> spirv, std::size_t buffers, std::uint32_t push_bytes,
                 std::span<const std::uint32_t> constants, std::size_t uniform = no_binding);
@@ -51,8 +51,8 @@ class Gpu {
     /// Reads a buffer back, from that byte on.
     Status read(std::size_t binding, std::span<std::byte> bytes, std::size_t from = 0);
 
-    /// Runs the kernel in that many groups, and waits for it. `seconds`: that it took, by the device's clock where
-    /// it has one.
+    /// Runs the kernel in that many groups, and waits for it. `seconds`: that it took, by the device's clock
+    /// where it has one.
     Status run(std::span<const std::byte> push, std::uint32_t groups, double& seconds);
 
     const GpuInfo& info() const { return info_; }

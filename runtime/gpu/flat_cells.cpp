@@ -66,7 +66,8 @@ class Cells {
             for (std::uint32_t i = 0; i < node.edge_count; ++i)
                 own.push_back(node.first_edge + i);
             FlatCell cell{std::move(own), std::numeric_limits<float>::infinity(), 0, node.unending ? 1u : 0u};
-            while (expand(node, cell, most_new_edges, [&](const FlatEdge& edge) { return is_group(edge, cell); })) {
+            while (expand(node, cell, most_new_edges,
+                          [&](const FlatEdge& edge) { return is_group(edge, cell); })) {
             }
             cells_.shallow.push_back(std::move(cell.edges));
         }
@@ -80,7 +81,8 @@ class Cells {
     /// A union that is never cut where the parts passed over are not.
     bool is_group(const FlatEdge& edge, const FlatCell& cell) const {
         const FlatNode& child = graph_.nodes[edge.child];
-        return is_union(child) && child.cut_detail == 0 && (!child.unending || edge.levels < cell.least_steps);
+        return is_union(child) && child.cut_detail == 0 &&
+               (!child.unending || edge.levels < cell.least_steps);
     }
 
     /// Makes all cells deeper, level by level, as long as there is room.
@@ -155,11 +157,12 @@ class Cells {
         cell.least_size = std::min(cell.least_size, child.diameter * edge.stretch / child.cut_detail);
         const auto at = [](const std::array<float, 3>& v) { return Vec3(v[0], v[1], v[2]); };
         const Vec3 centre = parent_from_child(edge)(at(child.centre));
-        cell.reach = std::max(cell.reach, static_cast<float>(glm::distance(centre, at(node.centre)) * (1 + 1e-6)));
+        cell.reach =
+            std::max(cell.reach, static_cast<float>(glm::distance(centre, at(node.centre)) * (1 + 1e-6)));
     }
 
-    /// One edge for two after each other. The last of them is always the graph's own, so that a way is taken apart
-    /// from its end.
+    /// One edge for two after each other. The last of them is always the graph's own, so that a way is taken
+    /// apart from its end.
     std::uint32_t join(std::uint32_t before, std::uint32_t last) {
         const PassedEdge& passed = cells_.edges[last];
         if (passed.before != flat_none) {
@@ -175,8 +178,9 @@ class Cells {
         FlatEdge edge = second;
         edge.levels = first.levels + second.levels;
         if (second.material == flat_none) edge.material = first.material;
-        edge.stretch = is_similarity(first) && is_similarity(second) ? first.stretch * second.stretch
-                                                                     : static_cast<float>(largest_stretch(whole.linear));
+        edge.stretch = is_similarity(first) && is_similarity(second)
+                           ? first.stretch * second.stretch
+                           : static_cast<float>(largest_stretch(whole.linear));
         edge.tint = second.tint.under(first.tint);
         for (std::size_t i = 0; i < 9; ++i)
             edge.child_from_parent[i] = FloatPair(linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
@@ -196,7 +200,8 @@ class Cells {
 } // namespace
 
 bool is_similarity(const FlatEdge& edge) {
-    const Mat3 squares = glm::transpose(linear_of(edge)) * linear_of(edge) * double(edge.stretch) * double(edge.stretch);
+    const Mat3 squares =
+        glm::transpose(linear_of(edge)) * linear_of(edge) * double(edge.stretch) * double(edge.stretch);
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k <= i; ++k)
             if (!(std::abs(squares[i][k] - (i == k ? 1 : 0)) < 1e-6)) return false;

@@ -13,8 +13,9 @@ bool is_similarity(const FlatEdge& edge);
 /// An edge of a FlatGraph, or two after each other as one: a ray spares the node between them.
 struct PassedEdge {
     FlatEdge edge;
-    std::uint32_t before = flat_none; ///< the two, by number in FlatCells::edges; none: the edge is the graph's own
-    std::uint32_t last = flat_none;   ///< which is the graph's own
+    std::uint32_t before =
+        flat_none; ///< the two, by number in FlatCells::edges; none: the edge is the graph's own
+    std::uint32_t last = flat_none; ///< which is the graph's own
 };
 
 /// Parts of several levels of one node that are met as one set, while none of the nodes passed over is cut.
@@ -27,9 +28,9 @@ struct FlatCell {
 
 struct FlatCells {
     std::vector<PassedEdge> edges;                   ///< the graph's come first, by their numbers there
-    std::vector<std::vector<std::uint32_t>> shallow; ///< by node: its edges; those of groups that are never cut in
-                                                     ///< place of the groups
-    std::vector<std::vector<FlatCell>> deep;         ///< by node, each of one level more than the one before
+    std::vector<std::vector<std::uint32_t>> shallow; ///< by node: its edges; those of groups that are never
+                                                     ///< cut in place of the groups
+    std::vector<std::vector<FlatCell>> deep; ///< by node, each of one level more than the one before
 };
 
 /// Cells for all nodes, of 512 parts at most each. They grow the graph by 65,536 edges at most.

@@ -112,8 +112,8 @@ class Flattener {
         const bool is_mesh = primitive != flat_none && meshes_[primitive] != NONE;
         if (primitive == flat_none || is_mesh) features.even = features.even && keeps_directions(edge);
         if (primitive != flat_none)
-            features.kinds |= 1u << (is_mesh ? KIND_MESH
-                                             : static_cast<unsigned>(graph_.primitives[primitive].kind()));
+            features.kinds |=
+                1u << (is_mesh ? KIND_MESH : static_cast<unsigned>(graph_.primitives[primitive].kind()));
         flat_.looks.push_back(of_paint(edge.tint));
         flat_.looks.emplace_back(edge.turns, flat_bits(part_number(passed.before)),
                                  flat_bits(part_number(passed.last)), 0);
@@ -197,8 +197,9 @@ class Flattener {
             const std::array<Vec3, 3> at = {mesh.vertices[corners[0]], mesh.vertices[corners[1]],
                                             mesh.vertices[corners[2]]};
             const Vec3 level = glm::normalize(glm::cross(at[1] - at[0], at[2] - at[0]));
-            const std::array<TexturePoint, 3> uv =
-                flat_.features.pictured ? texture_coordinates(primitive, {}, at) : std::array<TexturePoint, 3>{};
+            const std::array<TexturePoint, 3> uv = flat_.features.pictured
+                                                       ? texture_coordinates(primitive, {}, at)
+                                                       : std::array<TexturePoint, 3>{};
             Box box;
             for (std::size_t k = 0; k < 3; ++k) {
                 box.include(at[k]);
@@ -233,13 +234,14 @@ std::string lack(const FlatRequest& request) {
     return "";
 }
 
-/// Whether the view shows parts of the root that are too small for places of single precision. Rounding moves rays by
-/// about 1e-7 of the root's size, and that is to stay far below a pixel.
+/// Whether the view shows parts of the root that are too small for places of single precision. Rounding moves
+/// rays by about 1e-7 of the root's size, and that is to stay far below a pixel.
 bool needs_pairs(const View& view, const Box& drawn) {
     const Camera& camera = view.camera;
     if (drawn.empty()) return false;
     const double size = glm::length(drawn.size());
-    const double distance = glm::length(glm::max(glm::max(drawn.min - camera.location, camera.location - drawn.max), 0.0));
+    const double distance =
+        glm::length(glm::max(glm::max(drawn.min - camera.location, camera.location - drawn.max), 0.0));
     const double pixel =
         (camera.orthographic ? camera.width
                              : 2 * std::tan(camera.angle_deg * std::numbers::pi / 360) * distance) /

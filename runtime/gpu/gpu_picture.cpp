@@ -43,13 +43,14 @@ GpuPicture::GpuPicture(Gpu& gpu, ImageSize size, const Tile& window, const Sampl
 Status GpuPicture::prepare(const FlatModel& model, std::uint32_t frames) {
     const FlatModel::Features& has = model.features;
     const std::array<std::uint32_t, 10> constants = {
-        frames,        samples_.aovs, has.stretched, has.even, model.scene.widths.z > 0,
-        has.patterned, has.pictured,  has.glassy,    has.kinds,   has.paired};
+        frames,        samples_.aovs, has.stretched, has.even,  model.scene.widths.z > 0,
+        has.patterned, has.pictured,  has.glassy,    has.kinds, has.paired};
     Status status = gpu_.load(picture_spirv, film_binding + 1, sizeof(Job), constants, scene_binding);
     const std::span<const std::byte> scene = std::as_bytes(std::span(&model.scene, 1));
     for (const std::span<const std::byte> bytes :
          {bytes_of(model.boxes), bytes_of(model.parts), bytes_of(model.nodes), bytes_of(model.looks),
-          bytes_of(model.materials), bytes_of(model.triangles), bytes_of(model.texels), scene, bytes_of(model.lows)})
+          bytes_of(model.materials), bytes_of(model.triangles), bytes_of(model.texels), scene,
+          bytes_of(model.lows)})
         if (status.ok()) status = gpu_.add_buffer(bytes);
     if (status.ok()) status = gpu_.add_buffer({}, window_.pixels() * sums_a_pixel() * sizeof(glm::vec4));
     return status;
@@ -60,19 +61,20 @@ Status GpuPicture::sample(std::uint32_t count, const std::function<bool(double)>
     const double all = static_cast<double>(count - done_) * window_.height;
     double finished = 0;
     while (done_ < count) {
-        // As many samples as take about as long as a piece may; else one, of as many whole rows of groups. A device
-        // is full only with many pixels.
+        // As many samples as take about as long as a piece may; else one, of as many whole rows of groups. A
+        // device is full only with many pixels.
         const double affordable = seconds_a_piece * pixels_a_second_ / static_cast<double>(window_.pixels());
-        const std::uint32_t samples = std::min(
-            {count - done_, most, static_cast<std::uint32_t>(std::clamp(affordable, 1.0, 1e6))});
+        const std::uint32_t samples =
+            std::min({count - done_, most, static_cast<std::uint32_t>(std::clamp(affordable, 1.0, 1e6))});
         for (int row = 0; row < window_.height;) {
             if (!goes_on(finished / all)) return Status::failure("interrupted");
             const double affordable_rows = seconds_a_piece * pixels_a_second_ / samples / window_.width;
             const int rows =
-                samples > 1 ? window_.height
-                            : std::min(window_.height - row,
-                                       group_side *
-                                           std::max(1, static_cast<int>(std::min(affordable_rows, 1e6)) / group_side));
+                samples > 1
+                    ? window_.height
+                    : std::min(window_.height - row,
+                               group_side * std::max(1, static_cast<int>(std::min(affordable_rows, 1e6)) /
+                                                            group_side));
             const auto u = [](auto number) { return static_cast<std::uint32_t>(number); };
             const Job job{{u(window_.x), u(window_.y + row), u(window_.width), u(rows)},
                           {u(size_.width), u(size_.height), done_, samples},

@@ -40,7 +40,7 @@ class GpuPicture {
 
     /// Counts of all samples so far.
     struct Seen {
-        double samples = 0;      ///< of all pixels together
+        double samples = 0; ///< of all pixels together
         double rays = 0;
         double steps = 0;        ///< boxes and parts that rays went to
         bool lost = false;       ///< rays had no room for some part: then the picture is wrong
@@ -51,8 +51,8 @@ class GpuPicture {
     /// of the window.
     Status read(const Film& film, double noise_255, Image& picture, Seen& seen);
 
-    /// Gives the values of each pixel of the window; `lost` as above. Requires Samples::aovs; `model` is the one
-    /// prepared.
+    /// Gives the values of each pixel of the window; `lost` as above. Requires Samples::aovs; `model` is the
+    /// one prepared.
     Status read_aovs(const FlatModel& model, AovPicture& aovs, bool& lost);
 
     double seconds() const { return seconds_; } ///< that the device has worked

@@ -1,8 +1,9 @@
 // Times of pictures on a device of Vulkan, for tools/bench/gpu.
 //   gpu_bench DEVICE WIDTHxHEIGHT        reads jobs from standard input, one a line: MODEL STEPS ZOOM SAMPLES
-// STEPS is a number, or - for as deep as the error asks. It prints a line of JSON for each job: bytes of the model, and the
-// milliseconds of the device for one ray a pixel without light, for one sample of light and for SAMPLES of them, medians of
-// some runs after the device has warmed up, with the rays of a sample. Pictures on surfaces are left out.
+// STEPS is a number, or - for as deep as the error asks. It prints a line of JSON for each job: bytes of the
+// model, and the milliseconds of the device for one ray a pixel without light, for one sample of light and
+// for SAMPLES of them, medians of some runs after the device has warmed up, with the rays of a sample.
+// Pictures on surfaces are left out.
 
 #include <algorithm>
 #include <cstdio>
@@ -149,8 +150,10 @@ int run(int argc, char** argv) {
     for (std::string line; std::getline(std::cin, line);) {
         Job job;
         std::istringstream(line) >> job.model >> job.steps >> job.zoom >> job.samples;
-        nlohmann::json row = {{"model", job.model}, {"steps", job.steps}, {"zoom", job.zoom}, {"samples", job.samples}};
-        if (Status measured = measure(*gpu, size, job, row); !measured.ok()) row["error"] = measured.message();
+        nlohmann::json row = {
+            {"model", job.model}, {"steps", job.steps}, {"zoom", job.zoom}, {"samples", job.samples}};
+        if (Status measured = measure(*gpu, size, job, row); !measured.ok())
+            row["error"] = measured.message();
         std::printf("%s\n", row.dump().c_str());
         std::fflush(stdout);
     }

@@ -12,7 +12,8 @@
 namespace graftal {
 namespace {
 
-/// The number of times that each entry is met below a node, whose boxes must lie in `outer`; or at a single entry.
+/// The number of times that each entry is met below a node, whose boxes must lie in `outer`; or at a single
+/// entry.
 void walk(const std::vector<glm::vec4>& boxes, std::uint32_t node, const Box& outer, int depth,
           std::map<std::uint32_t, int>& met, int& deepest) {
     deepest = std::max(deepest, depth);

@@ -26,8 +26,12 @@ FlatGraph flattened(const Graph& graph) {
 /// Objects at random, of primitives and of each other, with maps that turn and sometimes stretch.
 Graph random_graph(std::uint64_t seed) {
     std::mt19937_64 random(seed);
-    const auto within = [&](double least, double most) { return std::uniform_real_distribution(least, most)(random); };
-    const auto vector = [&](double most) { return Vec3(within(-most, most), within(-most, most), within(-most, most)); };
+    const auto within = [&](double least, double most) {
+        return std::uniform_real_distribution(least, most)(random);
+    };
+    const auto vector = [&](double most) {
+        return Vec3(within(-most, most), within(-most, most), within(-most, most));
+    };
     Graph graph = test::empty_graph();
     graph.materials.resize(2);
     graph.materials[0].name = "bark";
@@ -43,8 +47,10 @@ Graph random_graph(std::uint64_t seed) {
             const Affine turn = Affine::rotate(glm::normalize(vector(1) + Vec3(0, 2, 0)), within(0, 6));
             const Vec3 size = within(0, 1) < 0.8 ? Vec3(within(0.2, 0.5)) : Vec3(0.3, within(0.2, 0.4), 0.25);
             test::place(graph, object, objects[static_cast<std::size_t>(within(0, 4))],
-                        Affine::translate(vector(1)) * turn * Affine::scale(size), {Rgb(within(0, 1)), within(0, 1)});
-            if (within(0, 1) < 0.3) graph.objects[object].instances.back().material = static_cast<MaterialId>(within(0, 2));
+                        Affine::translate(vector(1)) * turn * Affine::scale(size),
+                        {Rgb(within(0, 1)), within(0, 1)});
+            if (within(0, 1) < 0.3)
+                graph.objects[object].instances.back().material = static_cast<MaterialId>(within(0, 2));
         }
     }
     test::place(graph, graph.root, objects[0], Affine::scale(Vec3(3)));
@@ -54,7 +60,8 @@ Graph random_graph(std::uint64_t seed) {
 Affine affine_of(const FlatEdge& edge) {
     Affine child_from_parent;
     for (std::size_t i = 0; i < 9; ++i)
-        child_from_parent.linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)] = edge.child_from_parent[i].value();
+        child_from_parent.linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)] =
+            edge.child_from_parent[i].value();
     Affine map = inverse(child_from_parent);
     for (std::size_t i = 0; i < 3; ++i)
         map.translation[static_cast<int>(i)] = edge.origin[i].value();
@@ -98,7 +105,8 @@ void expect_same(const FlatGraph& graph, const std::vector<std::uint32_t>& way, 
         for (int k = 0; k < 3; ++k)
             EXPECT_NEAR(whole.linear[i][k], map.linear[i][k], 1e-9);
         EXPECT_NEAR(whole.translation[i], map.translation[i], 1e-9);
-        EXPECT_NEAR(edge.tint.fixed[static_cast<std::size_t>(i)], tint.fixed[static_cast<std::size_t>(i)], 1e-6);
+        EXPECT_NEAR(edge.tint.fixed[static_cast<std::size_t>(i)], tint.fixed[static_cast<std::size_t>(i)],
+                    1e-6);
     }
     EXPECT_NEAR(edge.stretch, norm(map.linear), 1e-5);
     EXPECT_NEAR(edge.tint.open, tint.open, 1e-6);
@@ -156,7 +164,8 @@ TEST(FlatCells, AskForWhatIsPassedOver) {
                         EXPECT_TRUE(!child.unending || cell.least_steps > levels);
                         if (child.cut_detail == 0) continue;
                         ++passed;
-                        EXPECT_LE(cell.least_size, child.diameter * norm(map.linear) / child.cut_detail * (1 + 1e-5));
+                        EXPECT_LE(cell.least_size,
+                                  child.diameter * norm(map.linear) / child.cut_detail * (1 + 1e-5));
                         const auto at = [](const std::array<float, 3>& v) { return Vec3(v[0], v[1], v[2]); };
                         EXPECT_GE(cell.reach * (1 + 1e-5),
                                   glm::distance(map(at(child.centre)), at(graph.nodes[node].centre)));

@@ -31,6 +31,16 @@ struct Gpu::Buffer {
 };
 
 struct Gpu::Parts {
+    /// All that a kernel is made of.
+    struct Kernel {
+        const std::uint32_t* text = nullptr;
+        std::size_t buffers = 0;
+        std::uint32_t push_bytes = 0;
+        std::vector<std::uint32_t> constants;
+        std::size_t uniform = 0;
+        bool operator==(const Kernel&) const = default;
+    };
+
     explicit Parts(vulkan::Instance made) : instance(std::move(made)) {}
 
     ~Parts() {
@@ -48,13 +58,18 @@ struct Gpu::Parts {
         api.vkDestroyDevice(device, nullptr);
     }
 
-    /// Frees the kernel and its buffers.
-    void unload() {
-        const Api& api = instance.api;
-        api.vkDeviceWaitIdle(device);
+    void free_buffers() {
+        instance.api.vkDeviceWaitIdle(device);
         for (Buffer& buffer : buffers)
             free(buffer);
         buffers.clear();
+    }
+
+    /// Frees the kernel and its buffers.
+    void unload() {
+        const Api& api = instance.api;
+        free_buffers();
+        kernel = {};
         // Vulkan destroys null handles, too.
         api.vkDestroyDescriptorPool(device, std::exchange(sets, VK_NULL_HANDLE), nullptr);
         api.vkDestroyPipeline(device, std::exchange(pipeline, VK_NULL_HANDLE), nullptr);
@@ -246,6 +261,7 @@ struct Gpu::Parts {
     VkDescriptorSet set = VK_NULL_HANDLE;
     std::vector<Buffer> buffers;
     std::size_t uniform = no_binding;
+    Kernel kernel; ///< that is loaded; none: its text is null
 };
 
 Gpu::Gpu(std::unique_ptr<Parts> parts, GpuInfo info) : parts_(std::move(parts)), info_(std::move(info)) {}
@@ -272,6 +288,11 @@ std::unique_ptr<Gpu> Gpu::open(std::size_t number, Status& status) {
 
 Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std::uint32_t push_bytes,
                  std::span<const std::uint32_t> constants, std::size_t uniform) {
+    Parts::Kernel kernel{spirv.data(), buffers, push_bytes, {constants.begin(), constants.end()}, uniform};
+    if (parts_->kernel == kernel) {
+        parts_->free_buffers();
+        return {};
+    }
     parts_->unload();
     parts_->uniform = uniform;
     const Api& api = parts_->instance.api;
@@ -332,7 +353,9 @@ Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std:
     allocate.descriptorSetCount = 1;
     allocate.pSetLayouts = &parts_->set_layout;
     if (result == VK_SUCCESS) result = api.vkAllocateDescriptorSets(device, &allocate, &parts_->set);
-    return result == VK_SUCCESS ? Status() : failure("making the kernel", result);
+    if (result != VK_SUCCESS) return failure("making the kernel", result);
+    parts_->kernel = std::move(kernel);
+    return {};
 }
 
 Status Gpu::add_buffer(std::span<const std::byte> bytes, std::size_t size) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <system_error>
 #include <utility>
 
@@ -168,6 +169,36 @@ void note_native(const PreparedView& prepared, std::string_view why, Compilation
                                  fmt::format("the processors draw this picture, not the GPU: {}", why));
 }
 
+/// The device of the picture before, with its kernel: to open one takes longer than most frames of a film. It stays
+/// open to the end of the process, where drivers may be gone before it.
+class KeptGpu {
+  public:
+    std::unique_ptr<Gpu> take(std::size_t number, Status& status) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (gpu_ && number_ == number) return std::move(gpu_);
+        }
+        return Gpu::open(number, status);
+    }
+
+    /// Requires a device that works.
+    void keep(std::size_t number, std::unique_ptr<Gpu> gpu) {
+        const std::lock_guard lock(mutex_);
+        number_ = number;
+        std::swap(gpu_, gpu);
+    }
+
+    static KeptGpu& instance() {
+        static KeptGpu& kept = *new KeptGpu;
+        return kept;
+    }
+
+  private:
+    std::mutex mutex_;
+    std::unique_ptr<Gpu> gpu_;
+    std::size_t number_ = 0;
+};
+
 std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& options,
                                Compilation& compilation) {
     const Stopwatch preparing;
@@ -184,7 +215,8 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
     if (why.empty()) model = drawing.flat(why);
     if (model) {
         Status status;
-        const std::unique_ptr<Gpu> gpu = Gpu::open(options.device.value_or(0), status);
+        const std::size_t number = options.device.value_or(0);
+        std::unique_ptr<Gpu> gpu = KeptGpu::instance().take(number, status);
         const double prepared_seconds = preparing.seconds();
         if (gpu) status = drawing.draw(*model, *gpu);
         if (status.ok() || cancel.raised()) {
@@ -192,7 +224,9 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
             if (!drawing.has_begun()) return std::nullopt;
             compilation.times.push_back({"prepare", prepared_seconds});
             compilation.times.push_back({"trace", drawing.report().seconds});
-            return report_of(drawing.report(), gpu->info().name);
+            const std::string name = gpu->info().name;
+            if (status.ok()) KeptGpu::instance().keep(number, std::move(gpu));
+            return report_of(drawing.report(), name);
         }
         why = status.message();
     }

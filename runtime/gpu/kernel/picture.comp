@@ -93,9 +93,12 @@ layout(push_constant) uniform Push { Job job; };
 #include "runtime/trace/shade/formulas.glsl"
 #include "compiler/light/formulas.glsl"
 #include "runtime/gpu/kernel/primitives.glsl"
+#include "runtime/gpu/kernel/frames.glsl"
+#include "runtime/gpu/kernel/meeting.glsl"
 #include "runtime/gpu/kernel/walk.glsl"
 #include "runtime/gpu/kernel/random.glsl"
 #include "runtime/gpu/kernel/sky.glsl"
+#include "runtime/gpu/kernel/material.glsl"
 #include "runtime/gpu/kernel/light.glsl"
 #include "runtime/gpu/kernel/picture.glsl"
 

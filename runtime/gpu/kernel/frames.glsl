@@ -1,0 +1,257 @@
+// Places on the way of a ray, each in the frame of a part: kept while the ray is within it. MOST_FRAMES lie on the way
+// from the root.
+
+/// A place on the way, and the ray there: origin + (t - base) / unit * direction.
+struct Frame {
+    vec3 origin;
+    vec3 low;     // what the origin has lost by rounding, where PAIRED
+    float base;
+    vec3 direction;
+    float unit;
+    float scale;  // norm of the map to the world; the unit, unless STRETCHED
+    float margin; // by which parts may reach out of their boxes, where FAINTS
+    uint steps;   // levels that are left
+    uint part;    // the last on the way
+    int waiting;  // entries that waited when the ray came here
+    bool cut;     // drawn by what stands for its parts
+    bool faint;   // what is drawn stands for a set without area
+};
+
+FRAMES
+
+#define FRAME_CUT (1u << 31)
+#define FRAME_FAINT (1u << 30)
+#define FRAME_PART 0x3fffffffu
+
+/// Keeps a frame as number `at`. The fewer words it takes, the more rays a device has room for.
+void keep(int at, Frame frame) {
+    frame_places[at] = vec4(frame.origin, frame.base);
+    const uint marks = (frame.part & FRAME_PART) | (frame.cut ? FRAME_CUT : 0u) | (frame.faint ? FRAME_FAINT : 0u);
+    frame_marks[at] = uvec4(word_of(frame.unit), frame.steps, marks, uint(frame.waiting));
+    if (!EVEN) frame_directions[at] = frame.direction;
+    if (STRETCHED || FAINTS) frame_sizes[at] = vec2(frame.scale, frame.margin);
+    if (PAIRED) frame_lows[at] = frame.low;
+}
+
+/// The frame kept there. `direction`: of the ray in the world.
+Frame kept(int at, vec3 direction) {
+    const vec4 place = frame_places[at];
+    const uvec4 marks = frame_marks[at];
+    Frame frame;
+    frame.origin = xyz_of(place);
+    frame.low = vec3(0.0f);
+    if (PAIRED) frame.low = frame_lows[at];
+    frame.base = place.w;
+    frame.direction = direction;
+    if (!EVEN) frame.direction = frame_directions[at];
+    frame.unit = float_of(marks.x);
+    frame.scale = frame.unit;
+    frame.margin = 0.0f;
+    if (STRETCHED || FAINTS) {
+        frame.scale = frame_sizes[at].x;
+        frame.margin = frame_sizes[at].y;
+    }
+    frame.steps = marks.y;
+    frame.part = marks.z & FRAME_PART;
+    frame.waiting = int(marks.w);
+    frame.cut = (marks.z & FRAME_CUT) != 0u;
+    frame.faint = (marks.z & FRAME_FAINT) != 0u;
+    return frame;
+}
+
+/// The last part on the way to a kept frame, which is not the first.
+uint part_at(int at) {
+    return frame_marks[at].z & FRAME_PART;
+}
+
+uint node_of(uint part) {
+    return bits_of(parts(part * PART_SIZE + 3u)).y;
+}
+
+/// Half of what is drawn at least of a set without area, about a point of the world: Projection's
+/// least_half_width(), or most_half_width() with a negative radius.
+float least_half_width(vec3 from_eye, float radius) {
+    if (scene.projection.w == 0.0f) return 0.0f;
+    if (scene.projection.z > 0.0f) return scene.projection.z;
+    if (scene.direction.w > 0.0f) return scene.widths.x / scene.projection.x;
+    const float distance = max(dot(from_eye, xyz_of(scene.direction)), 0.5f * length(from_eye));
+    return scene.widths.x * max(distance - radius, scene.projection.y) / scene.projection.x;
+}
+
+/// The detail of a length of 1 about a point of the world: Projection::detail_per_unit().
+float detail_per_unit(vec3 from_eye, float radius) {
+    if (scene.projection.w == 0.0f) return FAR;
+    const float aside = abs(dot(from_eye, xyz_of(scene.right))), above = abs(dot(from_eye, xyz_of(scene.up)));
+    const bool parallel = scene.direction.w > 0.0f;
+    const float along = dot(from_eye, xyz_of(scene.direction)), depth = parallel ? 1.0f : along;
+    const bool seen = aside * scene.edges.y - depth * scene.edges.x <= radius &&
+                      above * scene.edges.w - depth * scene.edges.z <= radius && (parallel || along >= -radius);
+    const float coarser = seen ? 1.0f : 8.0f;
+    if (scene.projection.z > 0.0f) return 1.0f / (scene.projection.z * coarser);
+    if (parallel) return scene.projection.x / coarser;
+    const float distance = max(along, 0.5f * length(from_eye));
+    return scene.projection.x / (max(distance - radius, scene.projection.y) * coarser);
+}
+
+/// At most the detail of a length of 1 anywhere so far about that point.
+float least_detail_per_unit(vec3 from_eye, float reach) {
+    if (scene.projection.w == 0.0f) return FAR;
+    const float aside = abs(dot(from_eye, xyz_of(scene.right))), above = abs(dot(from_eye, xyz_of(scene.up)));
+    const bool parallel = scene.direction.w > 0.0f;
+    const float along = dot(from_eye, xyz_of(scene.direction)), depth = parallel ? 1.0f : along;
+    const bool seen = aside * scene.edges.y - depth * scene.edges.x <= -2.0f * reach &&
+                      above * scene.edges.w - depth * scene.edges.z <= -2.0f * reach && (parallel || along >= reach);
+    const float coarser = seen ? 1.0f : 8.0f;
+    if (scene.projection.z > 0.0f) return 1.0f / (scene.projection.z * coarser);
+    if (parallel) return scene.projection.x / coarser;
+    const float distance = max(along, 0.5f * length(from_eye)) + reach;
+    return scene.projection.x / (max(distance, scene.projection.y) * coarser);
+}
+
+vec3 rows_transposed(vec4 a, vec4 b, vec4 c, vec3 v) {
+    return v.x * xyz_of(a) + v.y * xyz_of(b) + v.z * xyz_of(c);
+}
+
+/// A normal of a part in the frame that holds it.
+vec3 normal_above(uint part, vec3 normal) {
+    const uint first = part * PART_SIZE;
+    const vec3 n = rows_transposed(parts(first), parts(first + 1u), parts(first + 2u), normal);
+    const float length2 = dot(n, n);
+    return length2 > 0.0f ? n * inversesqrt(length2) : normal;
+}
+
+/// The linear parts of the maps from the frames to the world, less the scale, where STRETCHED: the norm of a
+/// product of maps that stretch unevenly is no product.
+SPACES
+
+/// largest_stretch() of compiler/support.
+float largest_stretch(mat3 map) {
+    const vec3 a = map[0], b = map[1], c = map[2];
+    const float mean = (dot(a, a) + dot(b, b) + dot(c, c)) / 3.0f;
+    const float x = dot(a, a) / mean - 1.0f, y = dot(b, b) / mean - 1.0f, z = dot(c, c) / mean - 1.0f;
+    const float xy = dot(a, b) / mean, yz = dot(b, c) / mean, zx = dot(c, a) / mean;
+    const float p2 = (x * x + y * y + z * z + 2.0f * (xy * xy + yz * yz + zx * zx)) / 6.0f;
+    if (!(p2 > 1e-12f)) return sqrt(mean);
+    const float p = sqrt(p2);
+    const float determinant = x * (y * z - yz * yz) - xy * (xy * z - yz * zx) + zx * (xy * yz - y * zx);
+    const float angle = acos(clamp(0.5f * determinant / (p2 * p), -1.0f, 1.0f)) / 3.0f;
+    return sqrt(mean * (1.0f + 2.0f * p * cos(angle)));
+}
+
+/// The inverse of the matrix of these rows.
+mat3 inverse_of(vec3 row0, vec3 row1, vec3 row2) {
+    const vec3 x = cross(row1, row2), y = cross(row2, row0), z = cross(row0, row1);
+    return mat3(x, y, z) / dot(row0, x);
+}
+
+/// The linear map to the world from within a part, by the rows of that into it. `at`: of the frame that holds it, of
+/// this scale.
+mat3 to_world(int at, float scale, vec3 row0, vec3 row1, vec3 row2) {
+    const mat3 part = scale * inverse_of(row0, row1, row2);
+    return STRETCHED ? spaces[at] * part : part;
+}
+
+/// Half axes of the image of a ball that are shorter than the width become as long: the map by which rays meet
+/// that, in the ball's own space (least_width.h). Jacobi's turns find the axes.
+mat3 squeezing(mat3 world_from_ball, float width) {
+    const mat3 widths = world_from_ball / width;
+    mat3 squares = transpose(widths) * widths, axes = mat3(1.0f);
+    for (int turn = 0; turn < 12; ++turn) {
+        const int p = turn % 3, q = (p + 1) % 3;
+        if (!(abs(squares[p][q]) > 1e-7f * sqrt(squares[p][p] * squares[q][q]))) continue;
+        const float ratio = 0.5f * (squares[q][q] - squares[p][p]) / squares[p][q];
+        const float tangent = (ratio < 0.0f ? -1.0f : 1.0f) / (abs(ratio) + sqrt(ratio * ratio + 1.0f));
+        const float cosine = inversesqrt(tangent * tangent + 1.0f);
+        mat3 turned = mat3(1.0f);
+        turned[p][p] = cosine;
+        turned[q][q] = cosine;
+        turned[p][q] = -tangent * cosine;
+        turned[q][p] = tangent * cosine;
+        squares = transpose(turned) * squares * turned;
+        axes = axes * turned;
+    }
+    mat3 shares = mat3(1.0f);
+    for (int i = 0; i < 3; ++i)
+        shares[i][i] = min(sqrt(max(squares[i][i], 0.0f)), 1.0f);
+    return axes * shares * transpose(axes);
+}
+
+/// Half of the largest extent along an axis of a frame that a ball of the world has there, which has 1.
+float most_extent(mat3 space) {
+    const vec3 bc = cross(space[1], space[2]), ca = cross(space[2], space[0]), ab = cross(space[0], space[1]);
+    return max(length(bc), max(length(ca), length(ab))) / abs(dot(space[0], bc));
+}
+
+/// Places a part, whose map has these rows, into the space of frame `at`, of this scale; the norm of the map to the
+/// world.
+float place_space(int at, float scale, vec3 row0, vec3 row1, vec3 row2, float stretch) {
+    if (at == 0) {
+        spaces[1] = mat3(1.0f); // the root's map only scales evenly
+        return stretch;
+    }
+    const mat3 space = spaces[at] * inverse_of(row0, row1, row2) / stretch;
+    const float growth = largest_stretch(space);
+    spaces[at + 1] = space / growth;
+    return scale * stretch * growth;
+}
+
+/// A point of frame `at` in the world. Where no space tells how that is turned: the place of the ray nearest to it.
+vec3 place_of(vec3 point, Frame frame, int at, vec3 origin, vec3 direction) {
+    float along = dot(point - frame.origin, frame.direction);
+    if (STRETCHED) along /= dot(frame.direction, frame.direction);
+    const vec3 place = origin + (frame.base + along * frame.unit) * direction;
+    if (!STRETCHED) return place;
+    return place + frame.scale * (spaces[at] * (point - frame.origin - along * frame.direction));
+}
+
+/// a + b as a pair of floats: Knuth, "The Art of Computer Programming", volume 2, section 4.2.2, theorem B.
+void pair_of_sum(vec3 a, vec3 b, OUT(vec3) high, OUT(vec3) low) {
+    PRECISE vec3 sum = a + b;
+    PRECISE vec3 part = sum - a;
+    PRECISE vec3 left = (a - (sum - part)) + (b - part);
+    high = sum;
+    low = left;
+}
+
+/// a b as a pair of floats, by halves (Dekker 1971): not all devices have a product and a sum in one rounding.
+void pair_of_product(vec3 a, vec3 b, OUT(vec3) high, OUT(vec3) low) {
+    const float splitter = 4097.0f;
+    PRECISE vec3 product = a * b;
+    PRECISE vec3 a_split = splitter * a, b_split = splitter * b;
+    PRECISE vec3 a_high = a_split - (a_split - a), b_high = b_split - (b_split - b);
+    PRECISE vec3 a_low = a - a_high, b_low = b - b_high;
+    PRECISE vec3 left = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+    high = product;
+    low = left;
+}
+
+/// Adds a pair to a pair.
+void add_pair(vec3 other, vec3 other_low, INOUT(vec3) high, INOUT(vec3) low) {
+    vec3 sum;
+    vec3 left;
+    pair_of_sum(high, other, sum, left);
+    PRECISE vec3 all = left + (low + other_low);
+    pair_of_sum(sum, all, high, low);
+}
+
+/// The origin of a ray in a part, `along` from that of frame `outer`: errors of rounding would grow with each level.
+void place_by_pairs(uint part, Frame outer, float along, INOUT(Frame) inner) {
+    vec3 at = outer.origin;
+    vec3 at_low = outer.low;
+    vec3 product;
+    vec3 left;
+    pair_of_product(vec3(along), outer.direction, product, left);
+    add_pair(product, left, at, at_low);
+    const uint first = part * PART_SIZE;
+    const vec4 row0 = parts(first), row1 = parts(first + 1u), row2 = parts(first + 2u);
+    const vec4 low0 = lows(part * LOW_SIZE), low1 = lows(part * LOW_SIZE + 1u), low2 = lows(part * LOW_SIZE + 2u);
+    add_pair(-vec3(row0.w, row1.w, row2.w), -vec3(low0.w, low1.w, low2.w), at, at_low);
+    inner.origin = vec3(0.0f);
+    inner.low = vec3(0.0f);
+    for (int k = 0; k < 3; ++k) {
+        const vec3 column = vec3(row0[k], row1[k], row2[k]), column_low = vec3(low0[k], low1[k], low2[k]);
+        pair_of_product(column, vec3(at[k]), product, left);
+        PRECISE vec3 small = left + (column * at_low[k] + column_low * at[k]);
+        add_pair(product, small, inner.origin, inner.low);
+    }
+}

@@ -38,8 +38,8 @@ class Gpu {
 
     /// Makes a kernel of a SPIR-V text whose entry is main(), with `buffers` storage buffers at the bindings
     /// from 0 on, `push_bytes` of push constants, and values of its constants. It takes the place of the
-    /// one before, whose buffers go; the same one is not made again. The text outlives the device. `uniform`: the binding of a buffer of at most 16 KiB that is read alike
-    /// by all, if there is one.
+    /// one before, whose buffers go; the same one is not made again. The text outlives the device. `uniform`:
+    /// the binding of a buffer of at most 16 KiB that is read alike by all, if there is one.
     static constexpr std::size_t no_binding = SIZE_MAX;
     Status load(std::span<const std::uint32_t> spirv, std::size_t buffers, std::uint32_t push_bytes,
                 std::span<const std::uint32_t> constants, std::size_t uniform = no_binding);

@@ -30,7 +30,7 @@ struct FlatCells {
     std::vector<PassedEdge> edges;                   ///< the graph's come first, by their numbers there
     std::vector<std::vector<std::uint32_t>> shallow; ///< by node: its edges; those of groups that are never
                                                      ///< cut in place of the groups
-    std::vector<std::vector<FlatCell>> deep; ///< by node, each of one level more than the one before
+    std::vector<std::vector<FlatCell>> deep;         ///< by node, each of one level more than the one before
 };
 
 /// Cells for all nodes, of 512 parts at most each. They grow the graph by 65,536 edges at most.

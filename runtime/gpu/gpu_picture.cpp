@@ -61,7 +61,7 @@ Status GpuPicture::sample(std::uint32_t count, const std::function<bool(double)>
     const double all = static_cast<double>(count - done_) * window_.height;
     double finished = 0;
     while (done_ < count) {
-        // As many samples as take about as long as a piece may; else one, of as many whole rows of groups. A
+        // A piece is several samples of the whole window; else one sample, of as many whole rows of groups. A
         // device is full only with many pixels.
         const double affordable = seconds_a_piece * pixels_a_second_ / static_cast<double>(window_.pixels());
         const std::uint32_t samples =

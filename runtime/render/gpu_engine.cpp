@@ -169,8 +169,8 @@ void note_native(const PreparedView& prepared, std::string_view why, Compilation
                                  fmt::format("the processors draw this picture, not the GPU: {}", why));
 }
 
-/// The device of the picture before, with its kernel: to open one takes longer than most frames of a film. It stays
-/// open to the end of the process, where drivers may be gone before it.
+/// The device of the picture before, with its kernel: to open one takes longer than most frames of a film. It
+/// stays open to the end of the process, where drivers may be gone before it.
 class KeptGpu {
   public:
     std::unique_ptr<Gpu> take(std::size_t number, Status& status) {

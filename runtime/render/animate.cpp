@@ -309,7 +309,8 @@ class Animation {
             status = write_gif(options_.output, store_.paths(), options_.rate, on_frame);
         if (kind_ == AnimationKind::video) {
             on_frame(0);
-            status = write_video(options_.output, store_, options_.rate, session_.control().cancel);
+            status = write_video(options_.output, store_, options_.rate, session_.control().cancel,
+                                 [&](std::size_t done) { on_frame(std::min(done, options_.frames - 1)); });
         }
         return status.ok() || fail("", status);
     }

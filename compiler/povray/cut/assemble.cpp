@@ -16,6 +16,42 @@ namespace graftal {
 
 namespace {
 
+/// Work of a placement, in leaves: parts of meshes with pictures make materials and groups, too.
+constexpr double work_of_grouping = 3;
+
+/// Placements of meshes, counted before they are stored: a mesh may have hundreds of parts, of which the
+/// choice knew nothing.
+class PlacementCount {
+  public:
+    explicit PlacementCount(const PlacedPieces& pieces) : uses_(pieces.requests.size()) {
+        for (const Placed& thing : pieces.things)
+            if (!thing.textured && thing.request != Placed::no_request) {
+                uses_[thing.request] += 1;
+                all_uses_ += 1;
+            }
+    }
+
+    /// The mesh of the next request.
+    void add(std::size_t parts) {
+        const double uses = uses_[next_++];
+        counted_uses_ += uses;
+        placements_ += uses * static_cast<double>(parts);
+    }
+
+    double bytes() const { return placements_ * PovrayCosts::placement; }
+    /// Placements besides the first of each use, which is paid for when it is kept.
+    double more() const { return std::max(0.0, placements_ - counted_uses_); }
+    /// What all meshes take if the rest is as those that are counted, which take so much.
+    double extrapolated(double counted) const {
+        return counted_uses_ > 0 ? counted * all_uses_ / counted_uses_ : counted;
+    }
+
+  private:
+    std::vector<double> uses_; ///< by request
+    std::size_t next_ = 0;
+    double all_uses_ = 0, counted_uses_ = 0, placements_ = 0;
+};
+
 std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, const Symmetry& symmetry,
                                    const Projection& projection, const Piece& root, const Choice& choice,
                                    Weights& weights, bool limit_normals, ShellStore& shells,
@@ -25,6 +61,7 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
     if (!pieces) return std::nullopt;
     ShellShares shell_shares(cut, pieces->requests);
     std::vector<Baked> baked;
+    PlacementCount count(*pieces);
     double mesh_bytes = 0;
     double culled_detail = pieces->culled_detail;
     double tessellation_px = 0;
@@ -54,14 +91,24 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
                 WorkRates::baked_triangles +
             static_cast<double>(baked.back().shell_work) / WorkRates::shell_points;
         if (limits.work_seconds < 0) return std::nullopt;
-        if (!baked.back().complete || mesh_bytes > limits.memory_bytes) return std::nullopt;
+        count.add(baked.back().parts.size());
+        const double bytes = PovrayCosts::base + mesh_bytes + count.bytes();
+        if (!baked.back().complete || bytes > limits.memory_bytes) {
+            limits.needed_bytes = count.extrapolated(std::max(bytes, limits.memory_bytes));
+            return std::nullopt;
+        }
         culled_detail =
             std::max(culled_detail, baked.back().culled_detail * pieces->seen_share(baked.size() - 1));
         tessellation_px = std::max(tessellation_px, baked.back().tessellation_px);
     }
+    limits.work_seconds -= work_of_grouping * count.more() / WorkRates::leaves;
+    if (limits.work_seconds < 0) return std::nullopt;
     Grouping grouping(cut, *pieces, baked);
-    for (const Placed& thing : pieces->things)
+    for (const Placed& thing : pieces->things) {
+        if (limits.meter)
+            limits.meter->add(thing.request == Placed::no_request ? 1 : baked[thing.request].parts.size());
         grouping.add(thing);
+    }
     const double finest_of_runs = pieces->runs.sift(cut, projection);
     for (const PlacedRuns::Range& range : pieces->runs.ranges())
         grouping.add(range);

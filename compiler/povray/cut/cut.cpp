@@ -23,6 +23,8 @@ namespace {
 
 /// The error grows by this where the memory does not suffice: a quarter less on each side of a leaf.
 constexpr double coarser = 1.25;
+/// Bytes fall about by this power of the error.
+constexpr double bytes_by_error = 2;
 /// A cut is tried that is estimated to take this much more than there is: what is assembled is then counted.
 constexpr double estimate_slack = 1.25;
 /// Share of the memory that may be spent to make POV-Ray faster.
@@ -106,8 +108,14 @@ class Cutter {
     }
 
     /// The step to try after one that failed. Where it failed for its work there is half as much for the
-    /// next, and a step or two would not do.
-    int coarser_than(int steps) const { return failed_by_work_ ? 2 * steps + 2 : std::max(1, 2 * steps); }
+    /// next, and a step or two would not do. Where it is known how much it takes, that tells how many would.
+    int coarser_than(int steps) const {
+        if (failed_by_work_) return 2 * steps + 2;
+        const double excess = needed_bytes_ / memory_for_scene();
+        const double more =
+            excess > 1 && std::isfinite(excess) ? std::log(excess) / (bytes_by_error * std::log(coarser)) : 0;
+        return std::max({1, 2 * steps, steps + static_cast<int>(std::min<double>(more, coarsest()))});
+    }
 
     /// Growth of the error after a number of steps.
     static double factor_after(int steps) { return std::pow(coarser, steps); }
@@ -115,6 +123,7 @@ class Cutter {
     /// The cut with an error that is coarser by this number of steps than asked for. Nothing if it takes too
     /// much memory, POV-Ray's or our own.
     std::optional<Cut> attempt(int coarser_steps) {
+        needed_bytes_ = 0;
         try {
             return attempt_within(coarser_steps);
         } catch (const std::bad_alloc&) {
@@ -162,6 +171,7 @@ class Cutter {
             failed_by_work_ = by_work;
             return std::nullopt;
         };
+        needed_bytes_ = choice_.bytes;
         if (!(choice_.bytes <= estimate_slack * memory)) return failed(false);
         // The last try still has half of the work that is left.
         const double work_seconds = 0.5 * work_seconds_left_;
@@ -170,11 +180,12 @@ class Cutter {
             assemble(cut_, symmetry_, projection, root, choice_, weights, limit_normals(), *prepared_.shells,
                      limits, self_shadows(projection));
         if (options_.culls()) work_seconds_left_ -= work_seconds - std::max(0.0, limits.work_seconds);
+        needed_bytes_ = std::max(needed_bytes_, limits.needed_bytes);
         if (!cut) return failed(limits.work_seconds < 0);
         const double bytes = povray_bytes(*cut);
         cut->estimated_bytes = static_cast<std::uint64_t>(bytes + picture_bytes());
         if (bytes <= memory) return cut;
-        choice_.bytes = bytes;
+        needed_bytes_ = choice_.bytes = bytes;
         return failed(false);
     }
 
@@ -307,6 +318,7 @@ class Cutter {
     int grain_ = 1;             ///< of the last weights
     SelfShadowStore self_shadows_;
     double work_seconds_left_ = 0;
+    double needed_bytes_ = 0;     ///< by the last try, about, as far as it came; 0: not known
     WorkMeter meter_;             ///< of pieces that are chosen and unfolded, in all tries
     bool failed_by_work_ = false; ///< the last try that failed ended for its work
     Choice choice_;

@@ -13,7 +13,8 @@ struct AssemblyLimits {
     double memory_bytes = 0;    ///< by PovrayCosts (costs.h)
     double work_seconds = 0;    ///< by WorkRates (work.h)
     double slowness = 1;        ///< slowness_of_graph()
-    WorkMeter* meter = nullptr; ///< counts pieces; may be null
+    WorkMeter* meter = nullptr; ///< counts pieces and placements; may be null
+    double needed_bytes = 0;    ///< about, where what was counted takes more than there is
 };
 
 /// Unfolds the graph down to the pieces that become meshes, depth first. Nothing if a limit is passed on the

@@ -17,20 +17,21 @@ namespace graftal {
 
 namespace {
 
-std::string progress_text(const AnimationProgress& progress) {
-    const std::string frame = fmt::format("frame {}/{}", progress.frame + 1, progress.frames);
+void show(ProgressBar& bar, const AnimationProgress& progress) {
+    std::string text = fmt::format("frame {}/{}", progress.frame + 1, progress.frames);
     switch (progress.stage) {
     case AnimationProgress::Stage::measuring:
-        return "measuring, " + frame;
+        return bar.show("measuring, " + text);
     case AnimationProgress::Stage::assembling:
-        return "putting together, " + frame;
+        return bar.show("putting together",
+                        static_cast<double>(progress.frame) / static_cast<double>(progress.frames),
+                        ", " + text);
     case AnimationProgress::Stage::drawing:
         break;
     }
-    std::string text = frame;
     if (progress.fraction) text += fmt::format(" at {:.0f} %", 100 * *progress.fraction);
     if (progress.seconds_left) text += fmt::format(", {} left", duration_text(*progress.seconds_left));
-    return text;
+    bar.show(text);
 }
 
 /// Says once what many frames have to say.
@@ -83,7 +84,7 @@ int run_animate(const Options& options) {
     ProgressBar bar(!options.quiet);
     Warnings warnings(bar);
     AnimateOptions animate = animate_options(options);
-    animate.on_progress = [&](const AnimationProgress& progress) { bar.show(progress_text(progress)); };
+    animate.on_progress = [&](const AnimationProgress& progress) { show(bar, progress); };
     animate.on_estimate = [&](const AnimationEstimate& estimate) {
         constexpr double worth_a_word = 5;
         if (options.quiet || estimate.seconds < worth_a_word) return;

@@ -12,10 +12,10 @@ namespace graftal::test {
 inline std::optional<Cut> cut_graph(const Graph& graph, const Components& components,
                                     const std::vector<ObjectBounds>& bounds, const View& view,
                                     const DetailOptions& detail, Diagnostics& diagnostics,
-                                    const CutOptions& options = {}) {
+                                    const CutOptions& options = {}, const Control& control = no_control()) {
     if (refuse_endless(graph, components, detail, diagnostics)) return std::nullopt;
     const PreparedCut prepared = prepare_cut(graph, components, bounds, detail.preparing());
-    return cut_prepared(graph, prepared, view, detail, diagnostics, options);
+    return cut_prepared(graph, prepared, view, detail, diagnostics, options, control);
 }
 
 } // namespace graftal::test

@@ -41,7 +41,7 @@ class PlacementCount {
     double bytes() const { return placements_ * PovrayCosts::placement; }
     /// Placements besides the first of each use, which is paid for when it is kept.
     double more() const { return std::max(0.0, placements_ - counted_uses_); }
-    /// What all meshes take if the rest is as those that are counted, which take so much.
+    /// Bytes of all meshes, if the rest is as those that are counted, which take so many.
     double extrapolated(double counted) const {
         return counted_uses_ > 0 ? counted * all_uses_ / counted_uses_ : counted;
     }

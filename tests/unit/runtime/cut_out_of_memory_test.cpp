@@ -141,7 +141,8 @@ TEST(MemoryOfAnAssembly, CountsCornersOfMeshes) {
             whole += povray_bytes(*mesh);
         }
     ASSERT_GT(whole, triangles);
-    AssemblyLimits enough{whole, 1000, 1}, too_little{(triangles + whole) / 2, 1000, 1};
+    const double all = povray_bytes(*cut);
+    AssemblyLimits enough{all, 1000, 1}, too_little{all - 0.5 * (whole - triangles), 1000, 1};
     EXPECT_TRUE(assembled(model, 1e300, enough));
     EXPECT_FALSE(assembled(model, 1e300, too_little));
 }

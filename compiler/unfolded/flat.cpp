@@ -132,6 +132,21 @@ class Flattening {
 
 } // namespace
 
+Mat3 child_from_parent(const FlatEdge& edge) {
+    Mat3 linear;
+    for (std::size_t i = 0; i < 9; ++i)
+        linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)] = edge.child_from_parent[i].value();
+    return linear;
+}
+
+Affine parent_from_child(const FlatEdge& edge) {
+    Affine map;
+    map.linear = inverse(Affine{child_from_parent(edge), Vec3(0.0)}).linear;
+    for (int axis = 0; axis < 3; ++axis)
+        map.translation[axis] = edge.origin[static_cast<std::size_t>(axis)].value();
+    return map;
+}
+
 std::optional<FlatGraph> flat_graph(const LayeredGraph& layers, const DrawnBounds& bounds, double error_px,
                                     std::size_t most_edges) {
     return Flattening(layers.cut, bounds, most_edges).run(error_px);

@@ -42,6 +42,11 @@ struct FlatEdge {
         box; ///< holds all that the child draws, in the parent's frame; flat_endless or more if it has no end
 };
 
+/// Linear part of the map between the frames of an edge's two nodes.
+Mat3 child_from_parent(const FlatEdge& edge);
+/// Requires an edge of a FlatGraph, whose maps can be inverted.
+Affine parent_from_child(const FlatEdge& edge);
+
 struct FlatNode {
     std::uint32_t first_edge = 0;
     std::uint32_t edge_count = 0;

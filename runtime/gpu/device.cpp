@@ -37,7 +37,7 @@ struct Gpu::Parts {
         std::size_t buffers = 0;
         std::uint32_t push_bytes = 0;
         std::vector<std::uint32_t> constants;
-        std::size_t uniform = 0;
+        std::size_t uniform = no_binding;
         bool operator==(const Kernel&) const = default;
     };
 
@@ -235,7 +235,8 @@ struct Gpu::Parts {
     }
 
     VkDescriptorType kind_of(std::size_t binding) const {
-        return binding == uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        return binding == kernel.uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                         : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     }
 
     static constexpr VkDeviceSize stage_bytes = 16 << 20;
@@ -260,7 +261,6 @@ struct Gpu::Parts {
     VkDescriptorPool sets = VK_NULL_HANDLE;
     VkDescriptorSet set = VK_NULL_HANDLE;
     std::vector<Buffer> buffers;
-    std::size_t uniform = no_binding;
     Kernel kernel; ///< that is loaded; none: its text is null
 };
 
@@ -294,7 +294,7 @@ Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std:
         return {};
     }
     parts_->unload();
-    parts_->uniform = uniform;
+    parts_->kernel = std::move(kernel);
     const Api& api = parts_->instance.api;
     const VkDevice device = parts_->device;
     std::vector<VkDescriptorSetLayoutBinding> bindings;
@@ -353,9 +353,9 @@ Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std:
     allocate.descriptorSetCount = 1;
     allocate.pSetLayouts = &parts_->set_layout;
     if (result == VK_SUCCESS) result = api.vkAllocateDescriptorSets(device, &allocate, &parts_->set);
-    if (result != VK_SUCCESS) return failure("making the kernel", result);
-    parts_->kernel = std::move(kernel);
-    return {};
+    if (result == VK_SUCCESS) return {};
+    parts_->kernel = {};
+    return failure("making the kernel", result);
 }
 
 Status Gpu::add_buffer(std::span<const std::byte> bytes, std::size_t size) {

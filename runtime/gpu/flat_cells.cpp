@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -17,21 +18,6 @@ namespace {
 /// Small cells stay in the caches of a card.
 constexpr std::size_t most_parts = 512, most_deep_parts = 1024, most_new_edges = 65'536;
 constexpr int most_levels = 6;
-
-Mat3 linear_of(const FlatEdge& edge) {
-    Mat3 linear;
-    for (std::size_t i = 0; i < 9; ++i)
-        linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)] = edge.child_from_parent[i].value();
-    return linear;
-}
-
-Affine parent_from_child(const FlatEdge& edge) {
-    Affine map;
-    map.linear = inverse(Affine{linear_of(edge), Vec3(0.0)}).linear;
-    for (int axis = 0; axis < 3; ++axis)
-        map.translation[axis] = edge.origin[static_cast<std::size_t>(axis)].value();
-    return map;
-}
 
 bool is_endless(const FlatEdge& edge) {
     return !(edge.box[3] < flat_endless);
@@ -62,14 +48,15 @@ class Cells {
             cells_.edges.push_back({edge});
         cells_.deep.resize(graph_.nodes.size());
         for (const FlatNode& node : graph_.nodes) {
-            std::vector<std::uint32_t> own;
-            for (std::uint32_t i = 0; i < node.edge_count; ++i)
-                own.push_back(node.first_edge + i);
-            FlatCell cell{std::move(own), std::numeric_limits<float>::infinity(), 0, node.unending ? 1u : 0u};
-            while (expand(node, cell, most_new_edges,
+            std::vector<std::uint32_t>& own = cells_.shallow.emplace_back(node.edge_count);
+            std::iota(own.begin(), own.end(), node.first_edge);
+        }
+        for (std::uint32_t id = 0; id < graph_.nodes.size(); ++id) {
+            FlatCell cell = shallow_cell(id);
+            while (expand(graph_.nodes[id], cell, most_new_edges,
                           [&](const FlatEdge& edge) { return is_group(edge, cell); })) {
             }
-            cells_.shallow.push_back(std::move(cell.edges));
+            cells_.shallow[id] = std::move(cell.edges);
         }
         add_levels();
         return std::move(cells_);
@@ -77,6 +64,11 @@ class Cells {
 
   private:
     static bool is_union(const FlatNode& node) { return node.primitive == flat_none && node.edge_count > 0; }
+
+    FlatCell shallow_cell(std::uint32_t id) const {
+        return {cells_.shallow[id], std::numeric_limits<float>::infinity(), 0,
+                graph_.nodes[id].unending ? 1u : 0u};
+    }
 
     /// A union that is never cut where the parts passed over are not.
     bool is_group(const FlatEdge& edge, const FlatCell& cell) const {
@@ -88,9 +80,8 @@ class Cells {
     /// Makes all cells deeper, level by level, as long as there is room.
     void add_levels() {
         std::vector<FlatCell> cells;
-        for (std::size_t id = 0; id < graph_.nodes.size(); ++id)
-            cells.push_back({cells_.shallow[id], std::numeric_limits<float>::infinity(), 0,
-                             graph_.nodes[id].unending ? 1u : 0u});
+        for (std::uint32_t id = 0; id < graph_.nodes.size(); ++id)
+            cells.push_back(shallow_cell(id));
         const auto is_passed = [&](const FlatEdge& edge) {
             return is_union(graph_.nodes[edge.child]) && !is_endless(edge) && is_similarity(edge);
         };
@@ -114,10 +105,12 @@ class Cells {
     /// Puts parts of those edges that `holds` names in their places; false if there are none, or too many.
     template<typename Holds>
     bool expand(const FlatNode& node, FlatCell& cell, std::size_t most, const Holds& holds) {
+        std::vector<bool> passed;
         std::size_t count = 0, added = 0;
         for (const std::uint32_t number : cell.edges) {
             const FlatEdge& edge = cells_.edges[number].edge;
-            const std::size_t parts = holds(edge) ? parts_of(edge.child) : 0;
+            passed.push_back(holds(edge));
+            const std::size_t parts = passed.back() ? cells_.shallow[edge.child].size() : 0;
             added += parts;
             count += std::max<std::size_t>(parts, 1);
         }
@@ -125,28 +118,19 @@ class Cells {
         added_ += added;
         FlatCell deeper = cell;
         deeper.edges.clear();
-        for (const std::uint32_t number : cell.edges) {
-            const FlatEdge edge = cells_.edges[number].edge;
-            if (!holds(edge)) {
+        for (std::size_t i = 0; i < cell.edges.size(); ++i) {
+            const std::uint32_t number = cell.edges[i];
+            if (!passed[i]) {
                 deeper.edges.push_back(number);
                 continue;
             }
+            const FlatEdge edge = cells_.edges[number].edge;
             pass_over(node, edge, deeper);
-            const FlatNode& child = graph_.nodes[edge.child];
-            if (edge.child < cells_.shallow.size()) {
-                for (const std::uint32_t last : cells_.shallow[edge.child])
-                    deeper.edges.push_back(join(number, last));
-            } else {
-                for (std::uint32_t i = 0; i < child.edge_count; ++i)
-                    deeper.edges.push_back(join(number, child.first_edge + i));
-            }
+            for (const std::uint32_t last : cells_.shallow[edge.child])
+                deeper.edges.push_back(join(number, last));
         }
         cell = std::move(deeper);
         return true;
-    }
-
-    std::size_t parts_of(std::uint32_t node) const {
-        return node < cells_.shallow.size() ? cells_.shallow[node].size() : graph_.nodes[node].edge_count;
     }
 
     /// Notes what must hold for a node to be gone through.
@@ -174,7 +158,7 @@ class Cells {
         const FlatEdge first = cells_.edges[before].edge, second = cells_.edges[last].edge;
         const Affine parent_from_middle = parent_from_child(first);
         const Affine whole = parent_from_middle * parent_from_child(second);
-        const Mat3 linear = linear_of(second) * linear_of(first);
+        const Mat3 linear = child_from_parent(second) * child_from_parent(first);
         FlatEdge edge = second;
         edge.levels = first.levels + second.levels;
         if (second.material == flat_none) edge.material = first.material;
@@ -200,8 +184,8 @@ class Cells {
 } // namespace
 
 bool is_similarity(const FlatEdge& edge) {
-    const Mat3 squares =
-        glm::transpose(linear_of(edge)) * linear_of(edge) * double(edge.stretch) * double(edge.stretch);
+    const Mat3 linear = double(edge.stretch) * child_from_parent(edge),
+               squares = glm::transpose(linear) * linear;
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k <= i; ++k)
             if (!(std::abs(squares[i][k] - (i == k ? 1 : 0)) < 1e-6)) return false;

@@ -78,34 +78,30 @@ float least_half_width(vec3 from_eye, float radius) {
     return scene.widths.x * max(distance - radius, scene.projection.y) / scene.projection.x;
 }
 
-/// The detail of a length of 1 about a point of the world: Projection::detail_per_unit().
-float detail_per_unit(vec3 from_eye, float radius) {
+/// The detail of a length of 1 about a point of the world, which is seen where no edge of the view is farther than
+/// `beside` and it lies at least `before` in front of the eye. `nearer`: by which it may be nearer than the point.
+float detail_about(vec3 from_eye, float beside, float before, float nearer) {
     if (scene.projection.w == 0.0f) return FAR;
     const float aside = abs(dot(from_eye, xyz_of(scene.right))), above = abs(dot(from_eye, xyz_of(scene.up)));
     const bool parallel = scene.direction.w > 0.0f;
     const float along = dot(from_eye, xyz_of(scene.direction)), depth = parallel ? 1.0f : along;
-    const bool seen = aside * scene.edges.y - depth * scene.edges.x <= radius &&
-                      above * scene.edges.w - depth * scene.edges.z <= radius && (parallel || along >= -radius);
+    const bool seen = aside * scene.edges.y - depth * scene.edges.x <= beside &&
+                      above * scene.edges.w - depth * scene.edges.z <= beside && (parallel || along >= before);
     const float coarser = seen ? 1.0f : 8.0f;
     if (scene.projection.z > 0.0f) return 1.0f / (scene.projection.z * coarser);
     if (parallel) return scene.projection.x / coarser;
     const float distance = max(along, 0.5f * length(from_eye));
-    return scene.projection.x / (max(distance - radius, scene.projection.y) * coarser);
+    return scene.projection.x / (max(distance - nearer, scene.projection.y) * coarser);
+}
+
+/// Projection::detail_per_unit().
+float detail_per_unit(vec3 from_eye, float radius) {
+    return detail_about(from_eye, radius, -radius, radius);
 }
 
 /// At most the detail of a length of 1 anywhere so far about that point.
 float least_detail_per_unit(vec3 from_eye, float reach) {
-    if (scene.projection.w == 0.0f) return FAR;
-    const float aside = abs(dot(from_eye, xyz_of(scene.right))), above = abs(dot(from_eye, xyz_of(scene.up)));
-    const bool parallel = scene.direction.w > 0.0f;
-    const float along = dot(from_eye, xyz_of(scene.direction)), depth = parallel ? 1.0f : along;
-    const bool seen = aside * scene.edges.y - depth * scene.edges.x <= -2.0f * reach &&
-                      above * scene.edges.w - depth * scene.edges.z <= -2.0f * reach && (parallel || along >= reach);
-    const float coarser = seen ? 1.0f : 8.0f;
-    if (scene.projection.z > 0.0f) return 1.0f / (scene.projection.z * coarser);
-    if (parallel) return scene.projection.x / coarser;
-    const float distance = max(along, 0.5f * length(from_eye)) + reach;
-    return scene.projection.x / (max(distance, scene.projection.y) * coarser);
+    return detail_about(from_eye, -2.0f * reach, reach, -reach);
 }
 
 vec3 rows_transposed(vec4 a, vec4 b, vec4 c, vec3 v) {

@@ -57,17 +57,6 @@ Graph random_graph(std::uint64_t seed) {
     return graph;
 }
 
-Affine affine_of(const FlatEdge& edge) {
-    Affine child_from_parent;
-    for (std::size_t i = 0; i < 9; ++i)
-        child_from_parent.linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)] =
-            edge.child_from_parent[i].value();
-    Affine map = inverse(child_from_parent);
-    for (std::size_t i = 0; i < 3; ++i)
-        map.translation[static_cast<int>(i)] = edge.origin[i].value();
-    return map;
-}
-
 /// The graph's own edges that an edge stands for.
 std::vector<std::uint32_t> way_of(const FlatCells& cells, std::uint32_t number) {
     const PassedEdge& passed = cells.edges[number];
@@ -95,12 +84,12 @@ void expect_same(const FlatGraph& graph, const std::vector<std::uint32_t>& way, 
     std::uint32_t levels = 0, material = flat_none;
     for (const std::uint32_t number : way) {
         const FlatEdge& own = graph.edges[number];
-        map = map * affine_of(own);
+        map = map * parent_from_child(own);
         tint = own.tint.under(tint);
         levels += own.levels;
         if (own.material != flat_none) material = own.material;
     }
-    const Affine whole = affine_of(edge);
+    const Affine whole = parent_from_child(edge);
     for (int i = 0; i < 3; ++i) {
         for (int k = 0; k < 3; ++k)
             EXPECT_NEAR(whole.linear[i][k], map.linear[i][k], 1e-9);
@@ -144,7 +133,7 @@ TEST(FlatCells, HoldEachWayOnce) {
     EXPECT_GE(deepest, 3u);
 }
 
-/// What a cell asks of its node holds for everything that it passes over.
+/// Each demand of a cell on its node holds for everything that it passes over.
 TEST(FlatCells, AskForWhatIsPassedOver) {
     std::size_t passed = 0;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -159,7 +148,7 @@ TEST(FlatCells, AskForWhatIsPassedOver) {
                     for (std::size_t i = 0; i + 1 < way.size(); ++i) {
                         const FlatEdge& edge = graph.edges[way[i]];
                         const FlatNode& child = graph.nodes[edge.child];
-                        map = map * affine_of(edge);
+                        map = map * parent_from_child(edge);
                         levels += edge.levels;
                         EXPECT_TRUE(!child.unending || cell.least_steps > levels);
                         if (child.cut_detail == 0) continue;

@@ -64,7 +64,7 @@ std::unique_ptr<Accumulation> by_gpu(const PointSource& source, const Camera& ca
     return picture;
 }
 
-/// By the kernel's text as C++.
+/// Points of the kernel's text as C++.
 std::vector<std::uint32_t> by_text(const FlatGame& game, std::uint32_t points) {
     namespace text = points_kernel;
     text::game = &game;

@@ -44,18 +44,6 @@ Graph shrub() {
     return graph;
 }
 
-Affine parent_from_child(const FlatEdge& edge) {
-    Affine map;
-    Mat3 linear;
-    for (int k = 0; k < 3; ++k) {
-        for (int row = 0; row < 3; ++row)
-            linear[k][row] = edge.child_from_parent[static_cast<std::size_t>(3 * k + row)].value();
-        map.translation[k] = edge.origin[static_cast<std::size_t>(k)].value();
-    }
-    map.linear = inverse(Affine{linear, Vec3(0.0)}).linear;
-    return map;
-}
-
 struct FlatLeaf {
     Affine world_from_leaf;
     Paint tint; ///< of the whole way

@@ -102,8 +102,7 @@ void add_points_options(CLI::App& app, Options& options) {
         ->take_last();
     add_value(app, "--engine", "auto|native|gpu",
               "What makes the points: native, the processors; gpu, the graphics card (default auto: a card "
-              "if there "
-              "is one)",
+              "if there is one)",
               "auto, native or gpu", points_engine,
               [&options](const Engine* engine) { options.engine = engine; });
     add_device(app, options);

@@ -7,7 +7,7 @@
 #include "tests/unit/detail/models.h"
 #include "tests/unit/povray/cut/cut_graph.h"
 
-// What is spent on tries, where the memory allows a coarser picture alone.
+// Work of all tries, where the memory allows a coarser picture alone.
 
 namespace graftal {
 namespace {

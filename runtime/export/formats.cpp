@@ -41,6 +41,7 @@ const ExportWish* find_vain_wish(const ExportFormat& format, const ExportOptions
     using Options = ExportOptions;
     static constexpr ExportWish wishes[] = {
         {"unit", [](const Options& o) { return o.unit_mm.has_value(); }, &ExportFormat::has_unit},
+        {"part", [](const Options& o) { return !o.parts.empty(); }, &ExportFormat::has_parts},
         {"plotter", [](const Options& o) { return o.plotter; }, &ExportFormat::has_plotter},
         {"levels", [](const Options& o) { return o.levels.has_value(); }, &ExportFormat::has_levels},
         {"nodes", [](const Options& o) { return o.nodes.has_value(); }, &ExportFormat::has_nodes},

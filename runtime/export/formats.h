@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "compiler/support/diagnostics.h"
 #include "compiler/support/status.h"
@@ -25,6 +26,7 @@ struct ExportOptions {
     std::optional<unsigned> levels;                        ///< instances within instances, at most
     bool instancing = false;
     bool plotter = false;
+    std::vector<std::string> parts;                      ///< names of those that stay meshes of their own
     std::uint64_t memory_bytes = std::uint64_t{2} << 30; ///< most memory to use
     std::optional<std::size_t> nodes; ///< at most, of formats that share meshes only; default_nodes
     ImageMetadata metadata;
@@ -64,6 +66,7 @@ struct ExportFormat {
     bool has_instancing = false; ///< takes --instancing
     bool has_nodes = false;      ///< takes --nodes
     bool has_plotter = false;    ///< takes --plotter
+    bool has_parts = false;      ///< takes --part
     /// Writes the files, whole or not at all. A model that it cannot hold is an error among the diagnostics.
     Status (*write)(const ExportJob& job, ExportReport& report);
 };

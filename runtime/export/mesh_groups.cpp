@@ -24,6 +24,16 @@ std::vector<double> triangles_below(const UnfoldedScene& scene) {
     return triangles;
 }
 
+/// Nodes that lead to held parts.
+std::vector<bool> above(const std::vector<bool>& held, const UnfoldedScene& scene) {
+    std::vector<bool> leads(scene.nodes.size(), false);
+    if (held.empty()) return leads;
+    for (const SceneId id : scene.masters_first)
+        for (const ScenePart& part : scene.nodes[id].parts)
+            if (held[part.node] || leads[part.node]) leads[id] = true;
+    return leads;
+}
+
 } // namespace
 
 MeshGroups group_meshes(const UnfoldedScene& scene, const GroupOptions& options) {
@@ -31,9 +41,11 @@ MeshGroups group_meshes(const UnfoldedScene& scene, const GroupOptions& options)
     std::vector<std::size_t> rank(scene.nodes.size()); // a node has a larger rank than those that it holds
     for (std::size_t i = 0; i < scene.masters_first.size(); ++i)
         rank[scene.masters_first[i]] = i;
+    const std::vector<bool> must_open = above(options.held, scene);
     // The largest first, and among equals what holds the others: so each node is opened after all that place
     // it, and the number of its places is known.
     const auto later = [&](SceneId a, SceneId b) {
+        if (must_open[a] != must_open[b]) return static_cast<bool>(must_open[b]);
         return triangles[a] != triangles[b] ? triangles[a] < triangles[b] : rank[a] < rank[b];
     };
     std::priority_queue<SceneId, std::vector<SceneId>, decltype(later)> closed(later);
@@ -56,16 +68,20 @@ MeshGroups group_meshes(const UnfoldedScene& scene, const GroupOptions& options)
     groups.triangles = stored;
     while (!closed.empty()) {
         const SceneId id = closed.top();
+        if (!options.held.empty() && options.held[id]) {
+            closed.pop();
+            continue;
+        }
         if (scene.nodes[id].shape) break; // nothing larger can be opened
         nodes += places[id] * static_cast<double>(scene.nodes[id].parts.size());
-        if (nodes > options.most_nodes) break;
+        if (nodes > options.most_nodes && !must_open[id]) break;
         closed.pop();
         stored -= triangles[id];
         for (const ScenePart& part : scene.nodes[id].parts)
             if (meet(part.node, places[id])) stored += triangles[part.node];
         opened.push_back(id);
         const double cost = stored + options.triangles_of_node * nodes;
-        if (!(cost < least)) continue;
+        if (!(cost < least) && !must_open[id]) continue;
         least = cost;
         best = opened.size();
         groups.nodes = nodes;

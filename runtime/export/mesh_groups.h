@@ -12,6 +12,7 @@ namespace graftal {
 struct GroupOptions {
     double most_nodes = 30'000;     ///< places of meshes and of what holds them
     double triangles_of_node = 100; ///< cost of a node to a reader, in triangles of a mesh
+    std::vector<bool> held;         ///< by node: meshes of their own (held_parts.h); none where it is empty
 };
 
 struct MeshGroups {
@@ -21,8 +22,9 @@ struct MeshGroups {
     double triangles = 0; ///< of the meshes, each once
 };
 
-/// Opens the largest meshes first, as long as the nodes suffice; of all states on the way the one that costs
-/// least. Requires resolved looks.
+/// Opens what leads to held parts, and then the largest meshes first, as long as the nodes suffice; of all
+/// states on the way the one that costs least. Only held parts may take more nodes than there may be. Requires
+/// resolved looks.
 MeshGroups group_meshes(const UnfoldedScene& scene, const GroupOptions& options);
 
 /// Where a mesh lies in the world.

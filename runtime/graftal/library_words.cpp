@@ -20,6 +20,7 @@ constexpr std::pair<std::string_view, std::string_view> library_names[] = {
     {"--limit", "most_bytes"},
     {"--memory", "memory"},
     {"--nodes", "nodes"},
+    {"--part", "parts"},
     {"--root", "root"},
     {"--steps", "steps"},
     {"--work", "work"},

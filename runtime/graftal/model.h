@@ -183,6 +183,8 @@ struct ExportSettings {
     /// warning, until the file has no more. With this default it has 128 MiB then. Else graftal refuses it.
     std::uint64_t most_bytes = std::uint64_t{1} << 30;
     bool irradiance = false; ///< `.csv`, `.json` and `.mtg`: the light on each organ, too
+    /// glTF, pbrt and Mitsuba: names of objects that stay meshes of their own, such as the leaves of a tree.
+    std::vector<std::string> parts;
 };
 
 enum class Engine {

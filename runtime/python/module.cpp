@@ -251,9 +251,10 @@ PYBIND11_MODULE(_graftal, module) {
         .def("export_to",
              [](Model& model, const std::string& path, std::optional<double> unit_mm,
                 std::optional<unsigned> levels, std::optional<std::size_t> nodes, bool instancing,
-                bool plotter, std::uint64_t most_bytes, bool irradiance, const py::object& progress) {
-                 const ExportSettings settings{unit_mm, levels,     nodes,     instancing,
-                                               plotter, most_bytes, irradiance};
+                bool plotter, std::uint64_t most_bytes, bool irradiance, std::vector<std::string> parts,
+                const py::object& progress) {
+                 const ExportSettings settings{unit_mm, levels,     nodes,      instancing,
+                                               plotter, most_bytes, irradiance, std::move(parts)};
                  value_of(model, progress, [&] { return model.export_to(path, settings); });
              });
 }

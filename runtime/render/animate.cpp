@@ -77,18 +77,11 @@ class Animation {
 
     /// `part`: of the exposure, from 0.
     Moment moment(std::size_t frame, int part = 0) const {
-        const std::size_t last = std::max<std::size_t>(options_.frames - 1, 1);
         const double at = static_cast<double>(frame) + options_.shutter * part / parts_;
-        const double t = eased(options_.ease, std::min(1.0, at / static_cast<double>(last)));
-        Moment moment{options_.render.compile, {}};
-        moment.compile.view.turn_deg = turn(at);
-        for (const Sweep& sweep : options_.sweeps) {
-            const std::string words = sweep.apply(t, moment.compile);
-            moment.name += (moment.name.empty() ? "" : " ") + words;
-        }
-        moment.name = fmt::format("frame {} of {}{}", frame + 1, options_.frames,
-                                  moment.name.empty() ? "" : " (" + moment.name + ")");
-        return moment;
+        auto [compile, words] = moment_of(options_, at);
+        compile.view.turn_deg = turn(at);
+        return {std::move(compile), fmt::format("frame {} of {}{}", frame + 1, options_.frames,
+                                                words.empty() ? "" : " (" + words + ")")};
     }
 
     /// Whole turns end where they began, so that the frame after the last would be the first; others end
@@ -374,6 +367,7 @@ std::optional<AnimationKind> animation_kind(const std::string& output) {
                                                                {".png", AnimationKind::animated_png},
                                                                {".mp4", AnimationKind::video},
                                                                {".apng", AnimationKind::animated_png},
+                                                               {".usda", AnimationKind::usd},
                                                                {".webm", AnimationKind::video}};
     const auto kind = kinds.find(path.extension().string());
     return kind == kinds.end() ? std::nullopt : std::optional(kind->second);
@@ -383,6 +377,17 @@ std::string frames_directory(const std::string& output) {
     std::filesystem::path path(output);
     if (*animation_kind(output) != AnimationKind::frames) return path.replace_extension(".frames").string();
     return path.has_filename() ? output : path.parent_path().string();
+}
+
+AnimationMoment moment_of(const AnimateOptions& options, double at) {
+    const std::size_t last = std::max<std::size_t>(options.frames - 1, 1);
+    const double t = eased(options.ease, std::min(1.0, at / static_cast<double>(last)));
+    AnimationMoment moment{options.render.compile, {}};
+    for (const Sweep& sweep : options.sweeps) {
+        const std::string words = sweep.apply(t, moment.compile);
+        moment.words += (moment.words.empty() ? "" : " ") + words;
+    }
+    return moment;
 }
 
 int moments_of_exposure(Quality quality) {

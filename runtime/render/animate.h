@@ -12,10 +12,10 @@
 
 namespace graftal {
 
-enum class AnimationKind { frames, gif, animated_png, video };
+enum class AnimationKind { frames, gif, animated_png, video, usd };
 
-/// The kind that a name ends with: `.gif`; `.png`, `.apng`; `.mp4`, `.webm`; a directory of frames without
-/// any or with a slash. Nothing for other names.
+/// The kind that a name ends with: `.gif`; `.png`, `.apng`; `.mp4`, `.webm`; `.usda`, the model itself as it
+/// changes (export_animation()); a directory of frames without any or with a slash. Nothing for other names.
 std::optional<AnimationKind> animation_kind(const std::string& output);
 
 /// Where the frames are while they are made: the output itself, or NAME.frames beside NAME.gif.
@@ -69,6 +69,15 @@ struct AnimateOptions {
     /// After each model, and each frame, that is without errors: warnings.
     std::function<void(const Compilation&)> on_compiled;
 };
+
+/// The moving values at a time.
+struct AnimationMoment {
+    StageOptions compile;
+    std::string words; ///< of the command line, such as "--steps 4"
+};
+
+/// `at`: frames since the first, also between two.
+AnimationMoment moment_of(const AnimateOptions& options, double at);
 
 /// The result of an animation.
 struct AnimationOutcome {

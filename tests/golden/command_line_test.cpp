@@ -120,7 +120,7 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"animate a.inst --ease fast", "--ease: 'fast' is neither linear nor smooth"},
         {"animate a.inst -o a.mp4 --size 63x48", "a video needs an even width and height, such as 64x48"},
         {"animate a.inst -o a.jpg",
-         "'a.jpg': the name of an animation must end in .gif, .png, .apng, .mp4 or .webm"},
+         "'a.jpg': the name of an animation must end in .gif, .png, .apng, .mp4, .webm or .usda"},
         {"animate -", "give the model as a file, not on standard input"},
         {"render a.inst --steps 1..3", "--steps: '1..3' is not a number from 0 to 4000000000\n"},
         {"compile a.inst -o a.png", "'a.png': the name of a scene must end in .pov or .inc"},

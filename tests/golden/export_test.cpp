@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -75,6 +76,41 @@ TEST_F(Export, RefusesWrongCommandLines) {
     for (const auto& [command, said] : cases) {
         const RunResult result = graftal(command);
         EXPECT_EQ(result.status, 2) << command;
+        EXPECT_THAT(result.err, HasSubstr(said)) << command;
+    }
+    EXPECT_EQ(files(), "m.rifs");
+}
+
+TEST_F(Export, WritesAModelThatChangesAsUsd) {
+    const RunResult result = graftal("animate m.rifs --steps 1..3 --frames 6 --fps 12 -o g.usda");
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("g.usda: 6 frames, 12 per second"));
+    EXPECT_EQ(files(), "g.frames g.usda m.rifs");
+    for (const auto& [state, primitives] : {std::pair("0001", 3), {"0003", 9}, {"0005", 27}}) {
+        const std::string name = fmt::format("g.frames/frame_{}.usda", state), text = read(name);
+        EXPECT_EQ(graftal(fmt::format("export m.rifs --steps {} -o once.usda",
+                                      primitives == 3 ? 1 : primitives == 9 ? 2 : 3)).status, 0);
+        EXPECT_EQ(text.substr(text.find("def Xform")), read("once.usda").substr(read("once.usda").find("def Xform")));
+    }
+    const std::string whole = read("g.usda");
+    EXPECT_THAT(whole, HasSubstr(" endTimeCode = 6\n timeCodesPerSecond = 12\n"));
+    EXPECT_THAT(whole, HasSubstr("\"state_1\" (\n  prepend references = @g.frames/frame_0001.usda@\n )\n {\n"
+                                 "  token visibility.timeSamples = { 1: \"inherited\", 3: \"invisible\", }"));
+    EXPECT_THAT(whole, HasSubstr("{ 2: \"invisible\", 3: \"inherited\", 5: \"invisible\", }"));
+    EXPECT_THAT(whole, HasSubstr("{ 4: \"invisible\", 5: \"inherited\", }"));
+    EXPECT_EQ(whole.find("state_4"), std::string::npos);
+}
+
+TEST_F(Export, RefusesAnimationsThatUsdCannotShow) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"animate m.rifs -o a.usda", "a .usda shows a model that changes"},
+        {"animate m.rifs --steps 1..3 --turn 90 -o a.usda", "--turn: whoever reads a .usda turns the camera"},
+        {"animate m.rifs --steps 1..3 --quality best -o a.usda", "--quality: a .usda holds the model"},
+        {"animate m.rifs --steps 1..3 --zoom 2 -o a.usda", "--zoom: a .usda holds the model"},
+    };
+    for (const auto& [command, said] : cases) {
+        const RunResult result = graftal(command);
+        EXPECT_NE(result.status, 0) << command;
         EXPECT_THAT(result.err, HasSubstr(said)) << command;
     }
     EXPECT_EQ(files(), "m.rifs");

@@ -1,4 +1,4 @@
-// Every example of docs/language.md that is marked as a model (```lsys or ```inst) is a whole file that
+// Every example of docs/language.md and docs/card.md that is marked as a model (```lsys or ```inst) is a whole file that
 // compiles without a word, L-systems in both ways in which they may be compiled.
 
 #include <algorithm>
@@ -37,10 +37,10 @@ std::vector<Example> examples(const std::string& page, const std::string& langua
     return found;
 }
 
-void compile_examples(const std::string& language, std::size_t at_least) {
+void compile_examples(const std::string& file, const std::string& language, std::size_t at_least) {
     const std::filesystem::path root = GRAFTAL_SOURCE_DIR;
     std::string page;
-    ASSERT_TRUE(read_text((root / "docs/language.md").string(), page).ok());
+    ASSERT_TRUE(read_text((root / file).string(), page).ok());
     const std::vector<Example> found = examples(page, language);
     EXPECT_GE(found.size(), at_least);
     for (const Example& example : found)
@@ -53,14 +53,16 @@ void compile_examples(const std::string& language, std::size_t at_least) {
             const std::string name = (root / "scenes/ifs/example.").string() + language;
             const std::optional<Graph> graph =
                 lower_text(name, example.text, options, sources, diagnostics, {.files = &disk_files()}).graph;
-            EXPECT_TRUE(graph) << "docs/language.md:" << example.line;
-            EXPECT_EQ(diagnostics.render(sources), "") << "docs/language.md:" << example.line;
+            EXPECT_TRUE(graph) << file << ":" << example.line;
+            EXPECT_EQ(diagnostics.render(sources), "") << file << ":" << example.line;
         }
 }
 
 TEST(Language, ExamplesCompile) {
-    compile_examples("lsys", 18);
-    compile_examples("inst", 1);
+    compile_examples("docs/language.md", "lsys", 18);
+    compile_examples("docs/language.md", "inst", 1);
+    for (const char* language : {"lsys", "rifs", "inst"})
+        compile_examples("docs/card.md", language, 1);
 }
 
 } // namespace

@@ -28,6 +28,7 @@
 #include "tools/graftal/options/export.h"
 #include "tools/graftal/options/picture_description.h"
 #include "tools/graftal/options/points.h"
+#include "tools/graftal/options/refusals.h"
 #include "tools/graftal/options/shared.h"
 #include "tools/graftal/options/studio.h"
 #include "tools/graftal/options/sweep_values.h"
@@ -94,9 +95,8 @@ void add_animate(CLI::App& app, Options& options) {
     AnimationOptions& animation = options.animation;
     add_model(app, options);
     app.add_option("-o,--output", options.render.output,
-                   "Animation to write, .gif, .png (animated), .mp4 or .webm; a name without extension is a "
-                   "directory "
-                   "of frames (default: MODEL's name + .gif, in this folder)")
+                   "Animation to write, .gif, .png (animated), .mp4 or .webm; .usda: the model itself, as it "
+                   "changes; a name without extension is a directory of frames (default: MODEL's name + .gif, in this folder)")
         ->type_name("FILE");
     add_value(
         app, "--frames", "N", "Number of frames (default 60)", "a whole number from 1 to 100000",
@@ -135,7 +135,8 @@ void add_animate(CLI::App& app, Options& options) {
         "  graftal animate plant.lsys --steps 1..12 --frames 48 --fps 12 -o growth.png\n"
         "  graftal animate tree.inst --set a=10..30 --turn 90 --ease smooth -o tree.mp4\n"
         "  graftal animate fern.rifs --camera \"look_at=0,9,0 width=10..0.1\" -o zoom.webm\n"
-        "  graftal animate tree.inst --frames 240 -o frames/     # frames/frame_0001.png and so on");
+        "  graftal animate tree.inst --frames 240 -o frames/     # frames/frame_0001.png and so on\n"
+        "  graftal animate plant.lsys --steps 1..12 -o growth.usda  # the plant itself, for Blender");
 }
 
 void add_compile(CLI::App& app, Options& options) {
@@ -326,50 +327,6 @@ std::string passes_text() {
     return text;
 }
 
-/// The problem with options beside --watch, or "".
-std::string refusal_to_watch(const Options& options) {
-    if (options.engine && options.engine->name != native_engine.name)
-        return fmt::format("--watch draws with '--engine native': leave out '--engine {}'",
-                           options.engine->name);
-    if (options.operands.front() == "-")
-        return "--watch: standard input does not change: give the name of a model's file";
-    if (options.render.output == "-")
-        return "--watch draws one picture after the other: name their file with '-o FILE'";
-    return {};
-}
-
-/// The problem with the size of a picture, or of the part of it that is wanted; or "".
-std::string refusal_of_size(const Options& options) {
-    const ImageSize size = options.render.compile.view.size;
-    if (!options.render.tile) {
-        if (options.in_parts || is_drawn_at_once(size)) return {};
-        return fmt::format("--size: a picture of {}x{} is too large to be drawn at once (at most 32768 a "
-                           "side, and 2^28 pixels): draw it in tiles with 'graftal farm plan', or a part of "
-                           "it with --tile",
-                           size.width, size.height);
-    }
-    if (!options.render.tile->lies_in(size))
-        return fmt::format("--tile: this part is not within the {}x{} pixels of the picture", size.width,
-                           size.height);
-    if (options.progressive == true || options.watch)
-        return fmt::format("--tile draws once, at its finest: leave out {}",
-                           options.watch ? "--watch" : "--progressive");
-    return {};
-}
-
-/// The problem with an option of `render` for a .pifs file, or "": it has no camera, parts or light.
-std::string refusal_of_pifs(const CLI::App& command, const Options& options) {
-    constexpr std::string_view of_pifs[] = {"MODEL",  "--output", "--size",    "--bits",
-                                            "--work", "--memory", "--threads", "--quiet"};
-    if (options.in_parts) return "a .pifs file is decoded at once: 'graftal render' does it";
-    for (const CLI::Option* const option : command.get_options())
-        if (option->count() > 0 && std::ranges::find(of_pifs, option->get_name()) == std::end(of_pifs))
-            return fmt::format(
-                "{}: a .pifs file holds the blocks of a picture, and has no use for it: leave it out",
-                option->get_name());
-    return is_exr_name(options.render.output) ? "a .pifs file is decoded to a PNG: name it so" : "";
-}
-
 std::string complete_nothing(Options&) {
     return {};
 }
@@ -377,11 +334,6 @@ std::string complete_nothing(Options&) {
 std::string complete_studio(Options& options) {
     options.render.compile.detail.memory_bytes = options.studio.memory_bytes; // the limit of this process
     return {};
-}
-
-/// The engine's refusal of a picture, or "".
-std::string refusal_of_engine(const Options& options) {
-    return options.engine->refusal(options.render);
 }
 
 std::string complete_render(Options& options) {
@@ -540,6 +492,8 @@ ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_par
     std::string problem = complete(options);
     if (problem.empty() && chosen() == "render" && is_pifs_name(options.operands.front()))
         problem = refusal_of_pifs(chosen_command(), options);
+    if (problem.empty() && chosen() == "animate" && animation_kind(options.render.output) == AnimationKind::usd)
+        problem = refusal_of_usd(chosen_command());
     if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
 
     options.animation.identity = frame_identity(*app.get_subcommands().front(), *options.engine);

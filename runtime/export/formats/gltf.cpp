@@ -15,6 +15,7 @@
 #include "runtime/export/formats/pbr.h"
 #include "runtime/export/formats/picture_copies.h"
 #include "runtime/export/formats/rigid_parts.h"
+#include "runtime/export/held_parts.h"
 
 namespace graftal {
 
@@ -49,8 +50,8 @@ class FileStream : public std::streambuf {
 
 class GltfWriter {
   public:
-    GltfWriter(const ExportJob& job, const UnfoldedScene& scene)
-        : job_(job), scene_(scene), meshes_(scene), pictures_(job) {
+    GltfWriter(const ExportJob& job, const UnfoldedScene& scene, std::vector<bool> held)
+        : job_(job), scene_(scene), held_(std::move(held)), meshes_(scene), pictures_(job) {
         model_.asset.version = "2.0";
         model_.asset.generator = job.options.metadata.software;
         model_.buffers.emplace_back();
@@ -64,8 +65,9 @@ class GltfWriter {
             options.most_nodes = most_gltf_instances;
             options.triangles_of_node = triangles_of_instance;
         }
+        options.held = std::move(held_);
         groups_ = group_meshes(scene_, options);
-        if (refuse_groups()) return {};
+        if (refuse_groups(options.most_nodes)) return {};
         for (const SceneId id : groups_.meshes) {
             add_mesh(id);
             if (job_.cancel.raised()) return Status::failure("interrupted");
@@ -108,7 +110,16 @@ class GltfWriter {
     /// In memory, for each byte of the file.
     static constexpr double copies_in_memory = 4;
 
-    bool refuse_groups() const {
+    bool refuse_groups(double most_nodes) const {
+        if (groups_.nodes > most_nodes) {
+            refuse_as_too_large(
+                job_,
+                fmt::format("with each --part by itself, '{}' would have {:.3g} nodes, more than {:.0f}",
+                            job_.options.output, groups_.nodes, most_nodes),
+                "allow more with --nodes, or tables of places with --instancing; or leave out more with a "
+                "larger --error");
+            return true;
+        }
         const double bytes = groups_.triangles * bytes_of_triangle;
         const auto most = static_cast<double>(job_.options.most_bytes);
         const bool fits = bytes <= most;
@@ -490,6 +501,7 @@ class GltfWriter {
 
     const ExportJob& job_;
     const UnfoldedScene& scene_;
+    std::vector<bool> held_; ///< until the meshes are grouped
     ShapeMeshes meshes_;
     PictureCopies pictures_;
     tinygltf::Model model_;
@@ -502,13 +514,16 @@ class GltfWriter {
 Status write_gltf_file(const ExportJob& job, ExportReport& report, bool binary) {
     if (refuse_range(job, job.options.unit_mm.value_or(1000) / 1000)) return {};
     constexpr std::size_t most_looks = 1'000'000;
-    const std::optional<UnfoldedScene> scene =
+    std::optional<UnfoldedScene> scene =
         resolve_looks(job.scene, {most_looks}, job.model, job.diagnostics);
     job.too_large = !scene;
     if (!scene) return {};
     if (job.view.shows_sky_light)
         job.diagnostics.note(job.model, "glTF has no light of the sky: graftal leaves it out of the file");
-    GltfWriter writer(job, *scene);
+    std::optional<std::vector<bool>> held =
+        hold_parts(*scene, job.options.parts, job.model, job.diagnostics);
+    if (!held) return {};
+    GltfWriter writer(job, *scene, std::move(*held));
     Status made = writer.make();
     if (!made.ok() || job.diagnostics.has_errors()) return made;
     OutputFile file(job.options.output, job.options.most_bytes, job.too_large);
@@ -538,6 +553,7 @@ const ExportFormat gltf_format = {
     .has_unit = true,
     .has_instancing = true,
     .has_nodes = true,
+    .has_parts = true,
     .write = write_gltf,
 };
 
@@ -549,6 +565,7 @@ const ExportFormat glb_format = {
     .has_unit = true,
     .has_instancing = true,
     .has_nodes = true,
+    .has_parts = true,
     .write = write_glb,
 };
 

@@ -294,6 +294,7 @@ const ExportFormat mitsuba_format = {
     .name = "Mitsuba 3",
     .summary = "the same for Mitsuba; the meshes are in a .serialized file beside it",
     .meshes = SceneMeshes::by_size,
+    .has_parts = true,
     .write = write_mitsuba,
 };
 

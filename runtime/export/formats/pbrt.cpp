@@ -220,6 +220,7 @@ const ExportFormat pbrt_format = {
     .name = "pbrt-v4",
     .summary = "shared meshes with one level of instances, camera, lights and materials",
     .meshes = SceneMeshes::by_size,
+    .has_parts = true,
     .write = write_pbrt,
 };
 

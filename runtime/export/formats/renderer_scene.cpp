@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/export/formats/flat_files.h"
+#include "runtime/export/held_parts.h"
 
 namespace graftal {
 
@@ -25,8 +26,12 @@ std::optional<RendererScene> RendererScene::make(const ExportJob& job, double by
     if (!resolved) return std::nullopt;
     RendererScene made;
     made.scene_ = std::move(*resolved);
+    std::optional<std::vector<bool>> held =
+        hold_parts(made.scene_, job.options.parts, job.model, job.diagnostics);
+    if (!held) return std::nullopt;
     made.groups_ = group_meshes(made.scene_, {.most_nodes = most_renderer_places,
-                                              .triangles_of_node = bytes_of_place / bytes_of_triangle});
+                                              .triangles_of_node = bytes_of_place / bytes_of_triangle,
+                                              .held = std::move(*held)});
     const double bytes = made.groups_.triangles * bytes_of_triangle + made.groups_.nodes * bytes_of_place;
     if (bytes > static_cast<double>(job.options.most_bytes)) {
         refuse_as_too_large(

@@ -16,6 +16,7 @@
 #include "runtime/export/formats/pbr.h"
 #include "runtime/export/formats/picture_copies.h"
 #include "runtime/export/formats/rigid_parts.h"
+#include "runtime/export/formats/usd_text.h"
 
 namespace graftal {
 
@@ -31,12 +32,6 @@ constexpr std::size_t most_usd_parts = 8'000'000;
 constexpr std::size_t most_usd_looks = 1'000'000;
 /// Most parts wanted in a file that has few, and most wanted for each part of the graph.
 constexpr std::uint64_t fewest_wanted_parts = 2000, most_times_parts = 2;
-
-/// The name of a file: one with an @ stands between three of them.
-std::string usd_asset(std::string_view name) {
-    const std::string_view mark = name.find('@') == std::string_view::npos ? "@" : "@@@";
-    return fmt::format("{0}{1}{0}", mark, name);
-}
 
 /// A name that USD takes.
 std::string usd_word(std::string_view name) {

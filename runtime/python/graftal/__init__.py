@@ -282,6 +282,7 @@ class Model:
         plotter: bool = False,
         most_bytes: int = 1 << 30,
         irradiance: bool = False,
+        parts: "Sequence[str]" = (),
     ) -> None:
         """Writes a picture (.png, .exr), a scene for POV-Ray (.pov, .inc), or a file for another program (.usda, .gltf, .glb,
         .obj, .ply, .stl, .svg, .pbrt, .xml), or the plant as data (.csv, .json, .mtg).
@@ -290,7 +291,7 @@ class Model:
         options of `graftal export` are. `unit_mm`: what a unit of the model measures, in millimetres. `most_bytes`: of
         the file. If the whole model takes more, graftal leaves out small parts until the file has no more (by default 128
         MiB), with a ModelWarning; if limits() has set error_px, it refuses the model. `irradiance`: the light on each organ of
-        a plant, as measures() has it.
+        a plant, as measures() has it. `parts`: names of objects that stay meshes of their own.
         """
         if engine not in ("native", "povray"):
             raise ValueError(f"engine: {engine!r} is neither 'native' nor 'povray'")
@@ -301,7 +302,7 @@ class Model:
         elif name.endswith((".png", ".exr")):
             self._model.render_to(name, engine, progress)
         else:
-            self._model.export_to(name, unit_mm, levels, nodes, instancing, plotter, most_bytes, irradiance, progress)
+            self._model.export_to(name, unit_mm, levels, nodes, instancing, plotter, most_bytes, irradiance, list(parts), progress)
 
     def _repr_png_(self) -> bytes:
         """The picture that a notebook shows of a model."""

@@ -68,5 +68,6 @@ class Model:
         plotter: bool,
         most_bytes: int,
         irradiance: bool,
+        parts: list[str],
         progress: Progress,
     ) -> None: ...

@@ -4,12 +4,14 @@
 
 #include <fmt/format.h>
 
+#include "runtime/export/export_animation.h"
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
 #include "runtime/system/interruption.h"
 #include "runtime/system/worker_threads.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/options/animate.h"
+#include "tools/graftal/options/export.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
 
@@ -94,13 +96,15 @@ int run_animate(const Options& options) {
     animate.on_compiled = [&](const Compilation& compilation) { warnings.say_new(compilation); };
 
     CommandSession session(options, options.operands.front(), Keep::for_views);
+    const bool is_usd = animation_kind(animate.output) == AnimationKind::usd;
     const Interruption interruption;
     session.set_control({interruption.flag(), {}});
-    const AnimationOutcome outcome = animate_model(session, animate);
+    const AnimationOutcome outcome = is_usd ? export_animation(session, animate, export_options(options))
+                                            : animate_model(session, animate);
     bar.clear();
     if (!outcome.done && !outcome.frame.empty()) complain("at " + outcome.frame + ":");
     const int status = conclude(options, outcome.compilation, interruption.signal());
-    if (!outcome.done) say(rest_text(options, outcome));
+    if (!outcome.done && !is_usd) say(rest_text(options, outcome));
     if (outcome.done && !options.quiet) say(done_text(options, outcome));
     return status;
 }

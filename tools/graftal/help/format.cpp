@@ -23,7 +23,7 @@ const std::vector<OptionGroup>& option_groups() {
          {"--points", "--color", "--exposure", "--gamma", "--palette", "--ground", "--light", "--glow",
           "--card"}},
         {"Target", {"--threshold", "--maps", "--similar", "--start", "--blocks", "--tolerance"}},
-        {"File", {"--limit", "--unit", "--levels", "--nodes", "--instancing", "--plotter"}},
+        {"File", {"--limit", "--unit", "--levels", "--nodes", "--part", "--instancing", "--plotter"}},
         {"Picture",
          {"--size", "--engine", "--device", "--quality", "--antialias", "--plain-light", "--bits", "--tile",
           "--transparent", "--watch"}},

@@ -18,10 +18,16 @@ std::string complete_animation(Options& options) {
     if (options.render.output.empty()) options.render.output = model_stem(options.operands.front()) + ".gif";
     const std::optional<AnimationKind> kind = animation_kind(options.render.output);
     if (!kind)
-        return fmt::format("'{}': the name of an animation must end in .gif, .png, .apng, .mp4 or .webm; the "
+        return fmt::format("'{}': the name of an animation must end in .gif, .png, .apng, .mp4, .webm or .usda; the "
                            "name of a directory "
                            "of frames has no extension, or ends in a slash",
                            options.render.output);
+    if (kind == AnimationKind::usd) {
+        if (options.in_parts) return "a .usda is written at once: 'graftal animate' does it";
+        if (animation.turn_deg) return "--turn: whoever reads a .usda turns the camera: leave it out";
+        if (animation.sweeps.empty())
+            return "a .usda shows a model that changes: give --steps, --seed or --set a value such as 1..8";
+    }
     if (kind == AnimationKind::gif && animation.rate.hundredths > fastest_gif.hundredths)
         return fmt::format("--fps: a GIF shows at most {:g} frames per second", fastest_gif.per_second());
     const ImageSize size = options.render.compile.view.size;

@@ -1,6 +1,7 @@
 // Motions of a camera: each gives a new one.
 import type { Camera } from './protocol';
-import { add, dot, subtract, times, turned, unit, units_of_pixel, view_of } from './vectors';
+import { rounded } from './dom';
+import { add, dot, length, subtract, times, turned, unit, units_of_pixel, view_of } from './vectors';
 
 /** Around the point that it looks at: by so much to the right and up, in radians. It never turns over. */
 export function orbited(camera: Camera, right_rad: number, up_rad: number): Camera {
@@ -19,6 +20,13 @@ export function panned(camera: Camera, dx_px: number, dy_px: number, width_px: n
   const view = view_of(camera), unit_of_px = units_of_pixel(camera, width_px);
   const by = add(times(view.right, -dx_px * unit_of_px), times(view.up, dy_px * unit_of_px));
   return { ...camera, location: add(camera.location, by), look_at: add(camera.look_at, by) };
+}
+
+/** With the digits that one can see: to a ten-thousandth of the distance. So a command line with it can be read. */
+export function tidied(camera: Camera): Camera {
+  const step = 1e-4 * length(subtract(camera.location, camera.look_at));
+  const tidy = (place: Camera['location']) => place.map((number) => rounded(number, step)) as Camera['location'];
+  return { ...camera, location: tidy(camera.location), look_at: tidy(camera.look_at) };
 }
 
 /** Nearer to the point that it looks at, `factor` times. Parallel rays draw together. */

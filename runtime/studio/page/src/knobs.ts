@@ -22,6 +22,8 @@ export class Knobs {
   readonly element = element('div', { class: 'knobs' });
   private readonly rows = new Map<string, Row>();
   private shape = '';
+  /** A number to write as soon as a model says where it stands in the text as it is. */
+  private owed: { name: string; until_ms: number } | null = null;
 
   constructor(private readonly studio: Studio) {}
 
@@ -42,6 +44,9 @@ export class Knobs {
       else if (!(name in now.set)) note_own(row, now.text, value);
     }
     this.show();
+    const { owed } = this;
+    this.owed = null;
+    if (owed && performance.now() < owed.until_ms) this.write(owed.name);
   }
 
   show(): void {
@@ -110,7 +115,12 @@ export class Knobs {
 
   /** Puts the number of a knob into the text in place of the one that stands there. */
   private write(name: string): void {
-    const parameter = this.studio.model?.parameters.find((one) => one.name === name);
+    const { session, model } = this.studio, patience_ms = 3000;
+    if (session.holds || model?.number !== session.number) {
+      this.owed = { name, until_ms: performance.now() + patience_ms };
+      return;
+    }
+    const parameter = model.parameters.find((one) => one.name === name);
     const { set: { [name]: value, ...set }, text } = this.studio.history.now;
     if (!parameter || parameter.from === undefined || parameter.to === undefined || value === undefined) return;
     const written = text.slice(0, parameter.from) + String(value) + text.slice(parameter.to);

@@ -1,5 +1,5 @@
 // The person's hands on the picture: orbit, pan and dolly by mouse, touch and keys; the wheel zooms without an end.
-import { dollied, orbited, panned } from './camera';
+import { dollied, orbited, panned, tidied } from './camera';
 import type { Studio } from './studio';
 import type { Camera } from './protocol';
 
@@ -122,7 +122,7 @@ export class ViewControl {
 
   private steer(change: (camera: Camera) => Camera, key: string): void {
     const { camera } = this.studio;
-    if (camera) this.studio.change({ camera: change(camera) }, key);
+    if (camera) this.studio.change({ camera: tidied(change(camera)) }, key);
   }
 
   private down(event: PointerEvent): void {

@@ -29,10 +29,11 @@ Status write_frames(const AnimateOptions& animate, const std::vector<State>& sta
     bool too_large = false;
     OutputFile file(animate.output, UINT64_MAX, too_large);
     if (!file.ok()) return file.status();
-    file.print("#usda 1.0\n(\n defaultPrim = \"model\"\n metersPerUnit = {}\n upAxis = \"Y\"\n startTimeCode = 1\n "
-               "endTimeCode = {}\n timeCodesPerSecond = {}\n framesPerSecond = {}\n)\n\ndef Xform \"model\"\n{{\n",
-               shortest(unit_mm / 1000), animate.frames, shortest(animate.rate.per_second()),
-               shortest(animate.rate.per_second()));
+    file.print(
+        "#usda 1.0\n(\n defaultPrim = \"model\"\n metersPerUnit = {}\n upAxis = \"Y\"\n startTimeCode = 1\n "
+        "endTimeCode = {}\n timeCodesPerSecond = {}\n framesPerSecond = {}\n)\n\ndef Xform \"model\"\n{{\n",
+        shortest(unit_mm / 1000), animate.frames, shortest(animate.rate.per_second()),
+        shortest(animate.rate.per_second()));
     std::vector<std::pair<std::string, std::string>> of_scene{{"Camera", "camera"}};
     for (std::size_t i = 0; i < view.lights.size(); ++i)
         of_scene.emplace_back("", fmt::format("light_{}", i));
@@ -104,8 +105,7 @@ AnimationOutcome export_animation(PictureSession& session, const AnimateOptions&
         shown = std::move(words);
         ++outcome.drawn;
     }
-    const Status status =
-        write_frames(animate, states, viewed->view, exported.file.unit_mm.value_or(1000));
+    const Status status = write_frames(animate, states, viewed->view, exported.file.unit_mm.value_or(1000));
     if (!status.ok()) return fail(status);
     outcome.done = true;
     outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

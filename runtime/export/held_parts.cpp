@@ -91,7 +91,8 @@ std::optional<std::vector<bool>> hold_parts(UnfoldedScene& scene, const std::vec
         SceneNode both;
         both.name = scene.nodes[scene.root].name;
         for (const SceneId half : {rest, held})
-            both.parts.push_back({.node = half, .node_from_part = {}, .tint = {}, .material = {}, .colour = {}});
+            both.parts.push_back(
+                {.node = half, .node_from_part = {}, .tint = {}, .material = {}, .colour = {}});
         scene.nodes.push_back(std::move(both));
         scene.root = static_cast<SceneId>(scene.nodes.size() - 1);
     }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Parts that stay meshes of their own, such as the leaves of a tree, so that whoever reads a file may replace,
-// hide and count them.
+// Parts that stay meshes of their own, such as the leaves of a tree, so that whoever reads a file may
+// replace, hide and count them.
 
 #include <optional>
 #include <string>

@@ -23,8 +23,8 @@ struct MeshGroups {
 };
 
 /// Opens what leads to held parts, and then the largest meshes first, as long as the nodes suffice; of all
-/// states on the way the one that costs least. Only held parts may take more nodes than there may be. Requires
-/// resolved looks.
+/// states on the way the one that costs least. Only held parts may take more nodes than there may be.
+/// Requires resolved looks.
 MeshGroups group_meshes(const UnfoldedScene& scene, const GroupOptions& options);
 
 /// Where a mesh lies in the world.

@@ -21,9 +21,7 @@ struct PictureWishes {
 
     /// Seconds of one processor that a picture may take: on two processors a picture of normal quality is
     /// there within ten seconds, whatever comes before it.
-    double work(Quality quality) const {
-        return work_seconds.value_or(by_quality(quality, 5.0, 9.0, 600.0));
-    }
+    double work(Quality quality) const { return work_seconds.value_or(by_quality(quality, 5.0, 9.0, 600.0)); }
 };
 
 /// The culling of a model and the rays of its picture, so that its work is within limits (fit_work.h). To

@@ -248,13 +248,12 @@ PYBIND11_MODULE(_graftal, module) {
              [](Model& model, const std::string& path, const py::object& progress) {
                  value_of(model, progress, [&] { return model.compile_to(path); });
              })
-        .def("export_to",
-             [](Model& model, const std::string& path, std::optional<double> unit_mm,
-                std::optional<unsigned> levels, std::optional<std::size_t> nodes, bool instancing,
-                bool plotter, std::uint64_t most_bytes, bool irradiance, std::vector<std::string> parts,
-                const py::object& progress) {
-                 const ExportSettings settings{unit_mm, levels,     nodes,      instancing,
-                                               plotter, most_bytes, irradiance, std::move(parts)};
-                 value_of(model, progress, [&] { return model.export_to(path, settings); });
-             });
+        .def("export_to", [](Model& model, const std::string& path, std::optional<double> unit_mm,
+                             std::optional<unsigned> levels, std::optional<std::size_t> nodes,
+                             bool instancing, bool plotter, std::uint64_t most_bytes, bool irradiance,
+                             std::vector<std::string> parts, const py::object& progress) {
+            const ExportSettings settings{unit_mm, levels,     nodes,      instancing,
+                                          plotter, most_bytes, irradiance, std::move(parts)};
+            value_of(model, progress, [&] { return model.export_to(path, settings); });
+        });
 }

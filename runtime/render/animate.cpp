@@ -363,12 +363,10 @@ std::optional<AnimationKind> animation_kind(const std::string& output) {
     const std::filesystem::path path(output);
     if (output.empty()) return std::nullopt;
     if (!path.has_filename() || path.extension().empty()) return AnimationKind::frames;
-    static const std::map<std::string, AnimationKind> kinds = {{".gif", AnimationKind::gif},
-                                                               {".png", AnimationKind::animated_png},
-                                                               {".mp4", AnimationKind::video},
-                                                               {".apng", AnimationKind::animated_png},
-                                                               {".usda", AnimationKind::usd},
-                                                               {".webm", AnimationKind::video}};
+    static const std::map<std::string, AnimationKind> kinds = {
+        {".gif", AnimationKind::gif},   {".png", AnimationKind::animated_png},
+        {".mp4", AnimationKind::video}, {".apng", AnimationKind::animated_png},
+        {".usda", AnimationKind::usd},  {".webm", AnimationKind::video}};
     const auto kind = kinds.find(path.extension().string());
     return kind == kinds.end() ? std::nullopt : std::optional(kind->second);
 }

@@ -16,7 +16,8 @@ namespace {
 
 /// Options of `render` and of `export` that a page may give, with a value or without.
 constexpr std::string_view picture_options[] = {"antialias", "samples", "noise", "work", "bits"};
-constexpr std::string_view export_options[] = {"limit", "unit", "levels", "nodes", "part", "error", "error-world"};
+constexpr std::string_view export_options[] = {"limit", "unit",  "levels",     "nodes",
+                                               "part",  "error", "error-world"};
 constexpr std::string_view export_flags[] = {"instancing", "plotter"};
 
 bool holds(std::span<const std::string_view> names, std::string_view name) {

@@ -88,9 +88,13 @@ TEST_F(Export, WritesAModelThatChangesAsUsd) {
     EXPECT_EQ(files(), "g.frames g.usda m.rifs");
     for (const auto& [state, primitives] : {std::pair("0001", 3), {"0003", 9}, {"0005", 27}}) {
         const std::string name = fmt::format("g.frames/frame_{}.usda", state), text = read(name);
-        EXPECT_EQ(graftal(fmt::format("export m.rifs --steps {} -o once.usda",
-                                      primitives == 3 ? 1 : primitives == 9 ? 2 : 3)).status, 0);
-        EXPECT_EQ(text.substr(text.find("def Xform")), read("once.usda").substr(read("once.usda").find("def Xform")));
+        EXPECT_EQ(graftal(fmt::format("export m.rifs --steps {} -o once.usda", primitives == 3   ? 1
+                                                                               : primitives == 9 ? 2
+                                                                                                 : 3))
+                      .status,
+                  0);
+        EXPECT_EQ(text.substr(text.find("def Xform")),
+                  read("once.usda").substr(read("once.usda").find("def Xform")));
     }
     const std::string whole = read("g.usda");
     EXPECT_THAT(whole, HasSubstr(" endTimeCode = 6\n timeCodesPerSecond = 12\n"));

@@ -1,5 +1,5 @@
-// Every example of docs/language.md and docs/card.md that is marked as a model (```lsys or ```inst) is a whole file that
-// compiles without a word, L-systems in both ways in which they may be compiled.
+// Every example of docs/language.md and docs/card.md that is marked as a model (```lsys or ```inst) is a
+// whole file that compiles without a word, L-systems in both ways in which they may be compiled.
 
 #include <algorithm>
 #include <cstddef>

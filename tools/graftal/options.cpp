@@ -96,7 +96,8 @@ void add_animate(CLI::App& app, Options& options) {
     add_model(app, options);
     app.add_option("-o,--output", options.render.output,
                    "Animation to write, .gif, .png (animated), .mp4 or .webm; .usda: the model itself, as it "
-                   "changes; a name without extension is a directory of frames (default: MODEL's name + .gif, in this folder)")
+                   "changes; a name without extension is a directory of frames (default: MODEL's name + "
+                   ".gif, in this folder)")
         ->type_name("FILE");
     add_value(
         app, "--frames", "N", "Number of frames (default 60)", "a whole number from 1 to 100000",
@@ -492,7 +493,8 @@ ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_par
     std::string problem = complete(options);
     if (problem.empty() && chosen() == "render" && is_pifs_name(options.operands.front()))
         problem = refusal_of_pifs(chosen_command(), options);
-    if (problem.empty() && chosen() == "animate" && animation_kind(options.render.output) == AnimationKind::usd)
+    if (problem.empty() && chosen() == "animate" &&
+        animation_kind(options.render.output) == AnimationKind::usd)
         problem = refusal_of_usd(chosen_command());
     if (!problem.empty()) return {std::nullopt, usage_error(problem, chosen())};
 

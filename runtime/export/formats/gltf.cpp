@@ -514,14 +514,12 @@ class GltfWriter {
 Status write_gltf_file(const ExportJob& job, ExportReport& report, bool binary) {
     if (refuse_range(job, job.options.unit_mm.value_or(1000) / 1000)) return {};
     constexpr std::size_t most_looks = 1'000'000;
-    std::optional<UnfoldedScene> scene =
-        resolve_looks(job.scene, {most_looks}, job.model, job.diagnostics);
+    std::optional<UnfoldedScene> scene = resolve_looks(job.scene, {most_looks}, job.model, job.diagnostics);
     job.too_large = !scene;
     if (!scene) return {};
     if (job.view.shows_sky_light)
         job.diagnostics.note(job.model, "glTF has no light of the sky: graftal leaves it out of the file");
-    std::optional<std::vector<bool>> held =
-        hold_parts(*scene, job.options.parts, job.model, job.diagnostics);
+    std::optional<std::vector<bool>> held = hold_parts(*scene, job.options.parts, job.model, job.diagnostics);
     if (!held) return {};
     GltfWriter writer(job, *scene, std::move(*held));
     Status made = writer.make();

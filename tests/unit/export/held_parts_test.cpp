@@ -1,4 +1,5 @@
-// Parts that stay meshes of their own: each leaf keeps its place and look, and each named part is one mesh wherever it is.
+// Parts that stay meshes of their own: each leaf keeps its place and look, and each named part is one mesh
+// wherever it is.
 
 #include <algorithm>
 #include <random>
@@ -42,8 +43,9 @@ std::string random_graph(std::mt19937& random, int objects) {
         text += fmt::format("{}object o{} {{\n", i + 1 == objects ? "" : "canonical ", i);
         const int parts = 1 + static_cast<int>(random() % 3);
         for (int part = 0; part < parts; ++part) {
-            const std::string what =
-                i == 0 || random() % 3 == 0 ? "cube" : fmt::format("o{}", random() % static_cast<unsigned>(i));
+            const std::string what = i == 0 || random() % 3 == 0
+                                         ? "cube"
+                                         : fmt::format("o{}", random() % static_cast<unsigned>(i));
             text += fmt::format("  {} scale: {} translate: {}, {}, {}\n", what, 0.3 + 0.1 * part, number(),
                                 number(), number());
         }
@@ -100,7 +102,8 @@ TEST(HeldParts, AreMeshesOfTheirOwn) {
     Diagnostics diagnostics;
     const auto held = hold_parts(*scene, {"leaf"}, {}, diagnostics);
     ASSERT_TRUE(held);
-    const MeshGroups groups = group_meshes(*scene, {.most_nodes = 100, .triangles_of_node = 1e9, .held = *held});
+    const MeshGroups groups =
+        group_meshes(*scene, {.most_nodes = 100, .triangles_of_node = 1e9, .held = *held});
     const std::vector<MeshPlace> places = places_of(*scene, groups);
     const auto of_leaves = std::ranges::count_if(
         places, [&](const MeshPlace& place) { return scene->nodes[place.mesh].name == "leaf"; });
@@ -160,7 +163,8 @@ TEST(HeldParts, RefuseANameThatNoPartHas) {
 TEST(HeldParts, HaveNodesOfTheirOwnInGltf) {
     Exporting exporting("m.inst", tree);
     exporting.options.file.parts = {"leaf"};
-    ASSERT_TRUE(exporting.to("m.gltf")) << exporting.compilation.diagnostics.render(exporting.compilation.sources);
+    ASSERT_TRUE(exporting.to("m.gltf"))
+        << exporting.compilation.diagnostics.render(exporting.compilation.sources);
     const std::string text = exporting.read("m.gltf");
     std::size_t named = 0;
     for (std::size_t at = text.find("\"leaf\""); at != std::string::npos; at = text.find("\"leaf\"", at + 1))
@@ -169,7 +173,8 @@ TEST(HeldParts, HaveNodesOfTheirOwnInGltf) {
     exporting.options.file.nodes = 3;
     exporting.options.error_asked = true;
     EXPECT_FALSE(exporting.to("m.gltf"));
-    EXPECT_THAT(exporting.compilation.diagnostics.render(exporting.compilation.sources), HasSubstr("with each --part by itself"));
+    EXPECT_THAT(exporting.compilation.diagnostics.render(exporting.compilation.sources),
+                HasSubstr("with each --part by itself"));
 }
 
 } // namespace

@@ -18,10 +18,11 @@ std::string complete_animation(Options& options) {
     if (options.render.output.empty()) options.render.output = model_stem(options.operands.front()) + ".gif";
     const std::optional<AnimationKind> kind = animation_kind(options.render.output);
     if (!kind)
-        return fmt::format("'{}': the name of an animation must end in .gif, .png, .apng, .mp4, .webm or .usda; the "
-                           "name of a directory "
-                           "of frames has no extension, or ends in a slash",
-                           options.render.output);
+        return fmt::format(
+            "'{}': the name of an animation must end in .gif, .png, .apng, .mp4, .webm or .usda; the "
+            "name of a directory "
+            "of frames has no extension, or ends in a slash",
+            options.render.output);
     if (kind == AnimationKind::usd) {
         if (options.in_parts) return "a .usda is written at once: 'graftal animate' does it";
         if (animation.turn_deg) return "--turn: whoever reads a .usda turns the camera: leave it out";

@@ -76,10 +76,11 @@ void add_export(CLI::App& app, Options& options) {
         "--instancing", file.instancing,
         fmt::format("Write one node a mesh, with a table of its places (EXT_mesh_gpu_instancing; {})",
                     endings_with(&ExportFormat::has_instancing)));
-    app.add_option("--part", file.parts,
-                   fmt::format("Keep each object of this name a mesh of its own, in a node of its own, such as the "
-                               "leaves of a tree; may repeat ({})",
-                               endings_with(&ExportFormat::has_parts)))
+    app.add_option(
+           "--part", file.parts,
+           fmt::format("Keep each object of this name a mesh of its own, in a node of its own, such as the "
+                       "leaves of a tree; may repeat ({})",
+                       endings_with(&ExportFormat::has_parts)))
         ->type_name("NAME")
         ->delimiter(',')
         ->allow_extra_args(false);

@@ -57,18 +57,19 @@ std::string refusal_of_pifs(const CLI::App& command, const Options& options) {
                                             "--work", "--memory", "--threads", "--quiet"};
     if (options.in_parts) return "a .pifs file is decoded at once: 'graftal render' does it";
     if (const std::string useless = useless_option(command, of_pifs); !useless.empty())
-        return fmt::format("{}: a .pifs file holds the blocks of a picture, and has no use for it: leave it out",
-                           useless);
+        return fmt::format(
+            "{}: a .pifs file holds the blocks of a picture, and has no use for it: leave it out", useless);
     return is_exr_name(options.render.output) ? "a .pifs file is decoded to a PNG: name it so" : "";
 }
 
 std::string refusal_of_usd(const CLI::App& command) {
     constexpr std::string_view of_usd[] = {
-        "MODEL",    "--output",      "--frames", "--fps",    "--ease",    "--steps",  "--seed",        "--set",
-        "--preset", "--exact",       "--error",  "--size",   "--camera",  "--memory", "--plain-light", "--root",
-        "--quiet",  "--error-world", "--time",   "--threads", "--dump-after"};
+        "MODEL",         "--output", "--frames", "--fps",         "--ease", "--steps",   "--seed",
+        "--set",         "--preset", "--exact",  "--error",       "--size", "--camera",  "--memory",
+        "--plain-light", "--root",   "--quiet",  "--error-world", "--time", "--threads", "--dump-after"};
     const std::string useless = useless_option(command, of_usd);
-    return useless.empty() ? "" : fmt::format("{}: a .usda holds the model, not pictures: leave it out", useless);
+    return useless.empty() ? ""
+                           : fmt::format("{}: a .usda holds the model, not pictures: leave it out", useless);
 }
 
 std::string refusal_of_engine(const Options& options) {

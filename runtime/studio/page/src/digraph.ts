@@ -5,7 +5,7 @@ import type { Studio } from './studio';
 
 const most_maps = 24, most_drawn = 12;
 /** Of the drawing, in its own units, which are pixels unless the page is narrow. */
-const size = 260, ring = 84, node_radius = 12;
+const size = 260, ring = 80, node_radius = 19, most_letters = 6;
 
 type Point = [number, number];
 const along = (a: Point, b: Point, length: number): Point => {
@@ -64,7 +64,7 @@ export class Digraph {
     }));
     const line = svg('path', { class: 'line', hidden: true });
     const nodes = maps.map((name, i) => {
-      const centre = place(i, ring), label = place(i, ring - node_radius - 4);
+      const centre = place(i, ring), label = name.length > most_letters ? `${name.slice(0, most_letters - 1)}…` : name;
       const node = svg('circle', { class: 'node', cx: centre[0], cy: centre[1], r: node_radius, 'data-node': name }, svg('title', {}, name));
       draggable(node, () => ({
         move: (event) => {
@@ -79,8 +79,7 @@ export class Digraph {
           void this.switch_edge(name, to, !edges[i]?.[maps.indexOf(to)]);
         },
       }));
-      const side = Math.abs(label[0] - size / 2) < 8 ? 'middle' : label[0] > size / 2 ? 'end' : 'start';
-      return [node, svg('text', { x: label[0], y: label[1], 'text-anchor': side }, name)];
+      return [node, svg('text', { x: centre[0], y: centre[1] }, label)];
     });
     // The matrix below says and does the same for those who cannot see or point.
     const drawing = svg('svg', { class: 'drawn', viewBox: `0 0 ${size} ${size}`, 'aria-hidden': 'true' },

@@ -15,7 +15,9 @@
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/fractint/ifs.h"
 #include "compiler/import/fractint/lsystem.h"
+#include "compiler/import/houdini/importer.h"
 #include "compiler/import/lparser/importer.h"
+#include "compiler/import/lpy/importer.h"
 #include "compiler/support/path_text.h"
 #include "compiler/support/small_letters.h"
 #include "compiler/support/text_encoding.h"
@@ -72,9 +74,11 @@ std::vector<std::string> names_of(const std::vector<ForeignModel>& models) {
 
 std::span<const Importer> importers() {
     // Where two rows share an ending, the first that recognises the text has it.
-    static const Importer table[] = {
-        cpfg_importer(),         fractint_lsystem_importer(), lparser_importer(), vlab_surface_importer(),
-        fractint_ifs_importer(), eisenscript_importer(),      cfdg_importer(),    flame_importer()};
+    static const Importer table[] = {cpfg_importer(),         fractint_lsystem_importer(),
+                                     lparser_importer(),      lpy_importer(),
+                                     houdini_importer(),      vlab_surface_importer(),
+                                     fractint_ifs_importer(), eisenscript_importer(),
+                                     cfdg_importer(),         flame_importer()};
     return table;
 }
 

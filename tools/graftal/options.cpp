@@ -269,7 +269,8 @@ void add_import(CLI::App& app, Options& options) {
     app.add_flag("-q,--quiet", options.quiet, "Print only errors and warnings");
     std::string formats = "Formats:\n";
     for (const Importer& importer : importers())
-        formats += fmt::format("  {:<20} .{}\n", importer.format, fmt::join(importer.endings, ", ."));
+        formats += fmt::format("  {:<20} {}{}\n", importer.format, importer.endings.empty() ? ".txt" : ".",
+                               fmt::join(importer.endings, ", ."));
     app.footer(formats +
                "All other commands read these files too: graftal render fractint.l:Koch1\n"
                "Examples:\n"

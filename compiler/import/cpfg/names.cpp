@@ -21,8 +21,9 @@ bool is_cpfg_name(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
 }
 
-CpfgNames::CpfgNames(const ForeignFile& file, const CpfgSource& source, const CpfgView& view)
-    : file_(file), source_(source), view_(view) {
+CpfgNames::CpfgNames(const ForeignFile& file, const CpfgSource& source, const CpfgView& view,
+                     const CpfgDialect* dialect)
+    : file_(file), source_(source), view_(view), dialect_(dialect) {
     find_lets();
     find_renamed();
 }
@@ -106,6 +107,7 @@ std::string CpfgNames::expanded(std::string_view text, Span span, bool in_string
 }
 
 std::string CpfgNames::expression(std::string_view text, Span span) {
+    if (dialect_) return std::string(text);
     const CpfgCalls calls = [&](std::string_view name, std::span<const std::string_view> arguments,
                                 std::span<const std::string> written) {
         return call(name, arguments, written, span);

@@ -13,17 +13,22 @@
 
 namespace graftal {
 
+struct CpfgDialect;
+
 bool is_cpfg_name(char c);
 
 /// The meanings of the names of a cpfg model: its macros and its functions. Reports names without a meaning.
 class CpfgNames {
   public:
-    /// All must outlive this.
-    CpfgNames(const ForeignFile& file, const CpfgSource& source, const CpfgView& view);
+    /// All must outlive this. `dialect`: of another program, whose expressions are ours already; null:
+    /// cpfg's.
+    CpfgNames(const ForeignFile& file, const CpfgSource& source, const CpfgView& view,
+              const CpfgDialect* dialect = nullptr);
 
     const ForeignFile& file() const { return file_; }
     const CpfgSource& source() const { return source_; }
     const CpfgView& view() const { return view_; }
+    const CpfgDialect* dialect() const { return dialect_; }
 
     void error(Span span, const std::string& message) { file_.diagnostics.error(span, message); }
     void warn_once(Span span, const std::string& message);
@@ -56,6 +61,7 @@ class CpfgNames {
     const ForeignFile& file_;
     const CpfgSource& source_;
     const CpfgView& view_;
+    const CpfgDialect* dialect_;
     std::set<std::string> lets_;
     std::set<std::string> renamed_; ///< variables of the model
     std::set<std::string> warned_;  ///< warnings given

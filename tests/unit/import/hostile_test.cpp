@@ -42,6 +42,10 @@ const std::vector<Format>& formats() {
          "\"/></flame>\n", "<a>", "</a>", "<xform weight=\"1\" linear=\"1\" coefs=\".5 0 0 .5 0 0\"/>\n"},
         {"a.es", "a\nrule ", " { box }\nrule a { { x ", " } box }\n", "(", ")",
          "rule a { { x 1 } r% box }\n"},
+        {"a.lpy", "Axiom: A(1)\nderivation length: 3\nproduction:\nA(", ") --> F(", ")A(0.5)\nendlsystem\n",
+         "(", ")", "M%(x) --> M%(x)A(x)\n"},
+        {"a.txt", "Premise: A(1)\nGenerations: 3\nRule 1: A(", ")=F(", ")A\nAngle: 9\n", "(", ")",
+         "Rule %: A(x)=FA(x)\n"},
         {"a.cfdg", "startshape A\nshape ", " { SQUARE [] }\nshape A { SQUARE [x ", "] }\n", "(", ")",
          "shape M% { A [s 0.5] }\n"},
     };

@@ -99,6 +99,8 @@ const std::vector<std::pair<std::string, std::string>> texts = {
     {"ifs", "dust {\n .5 0 0 .5 -1 0 .5\n .5 0 0 .5 1 0 .5\n}\n"},
     {"flame", "<flame name=\"a\"><xform weight=\"1\" linear=\"1\" coefs=\".5 0 0 .5 -1 0\"/></flame>\n"},
     {"es", "set maxdepth 3\nr\nrule r {\n box\n { x -1 s 0.9 } r\n}\n"},
+    {"lpy", "Axiom: F\nderivation length: 2\nproduction:\nF --> F-F\nendlsystem\n"},
+    {"txt", "Premise: F\nGenerations: 2\nRule 1: F=F-F\n"},
     {"cfdg", "startshape a\nshape a { SQUARE [x -1] }\n"}};
 
 TEST(Importers, TheBytesOfATextDoNotMatter) {
@@ -150,7 +152,7 @@ TEST(Importers, TheContentDecides) {
     for (const auto& [own, text] : texts) {
         const Imported plain("a." + own, text);
         for (const std::string ending :
-             {"l", "ls", "ifs", "flame", "es", "cfdg", "s", "txt", "lsystem", "LS"}) {
+             {"l", "ls", "ifs", "flame", "es", "cfdg", "lpy", "s", "txt", "lsystem", "LS"}) {
             const Imported other("a." + ending, text);
             EXPECT_EQ(other.translation, plain.translation) << own << " as " << ending << other.said();
         }

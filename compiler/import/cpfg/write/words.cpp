@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/cpfg/dialect.h"
 #include "compiler/import/foreign_text.h"
 
 namespace graftal {
@@ -33,6 +34,28 @@ CpfgWords::CpfgWords(CpfgNames& names, const CpfgSystem& system) : names_(names)
                 for (const CpfgModule& module : *string)
                     mentioned_.insert(module.symbol);
         }
+    if (names_.dialect()) find_told();
+}
+
+void CpfgWords::find_told() {
+    std::set<std::string> symbols = mentioned_;
+    mentioned_.insert(names_.dialect()->drawn_late.begin(), names_.dialect()->drawn_late.end());
+    const auto take = [&](const CpfgString& string, Span span) {
+        for (const CpfgModule& module : string) {
+            symbols.insert(module.symbol);
+            if (!told_.contains(module.symbol) && names_.dialect()->told(module, span))
+                told_.insert(module.symbol);
+        }
+    };
+    take(system_.axiom, system_.axiom_span);
+    for (const auto& [section, productions] : system_.productions)
+        for (const CpfgProduction& production : productions)
+            take(production.successor, production.span);
+    has_long_names_ = std::ranges::any_of(symbols, [&](const std::string& symbol) {
+        const std::string name = name_in_dialect(symbol);
+        const bool stays = !told_.contains(symbol) || is_renamed(symbol);
+        return stays && name.size() > 1 && std::ranges::all_of(name, is_cpfg_name);
+    });
 }
 
 int CpfgWords::depth_of(CpfgSection section) const {
@@ -56,6 +79,7 @@ std::string CpfgWords::formals(const CpfgString& string) {
 /// Whether productions know the module by another name than the turtle.
 bool CpfgWords::is_renamed(const std::string& symbol) const {
     if (!mentioned_.contains(symbol)) return false;
+    if (names_.dialect()) return told_.contains(symbol);
     if (symbol[0] == '~' || symbol == "#" || symbol == "_") return true;
     if (symbol == "!") return names_.view().width_in_pixels || names_.view().width_increment != 0;
     if (symbol == ";" || symbol == ",") return names_.view().colour_increment != 1;
@@ -63,8 +87,28 @@ bool CpfgWords::is_renamed(const std::string& symbol) const {
     return symbol.size() > 1 && symbol[0] == '@' && std::ranges::find(same, symbol) == same.end();
 }
 
+/// A name that no command of ours has, for a symbol that has no command of ours.
+std::string CpfgWords::name_in_dialect(const std::string& symbol) const {
+    const std::string same = names_.dialect()->same(symbol);
+    if (!same.empty() && !is_renamed(symbol)) return same;
+    std::string name;
+    if (std::ranges::all_of(symbol, is_cpfg_name))
+        name = symbol;
+    else
+        for (const char c : symbol)
+            name += symbol_name(c);
+    if (is_one_of(name, "FfGgT")) name += name;
+    return name;
+}
+
 std::string CpfgWords::name_of(const std::string& symbol) {
     std::string name;
+    if (const CpfgDialect* const dialect = names_.dialect()) {
+        name = name_in_dialect(symbol);
+        const bool own = is_renamed(symbol) || dialect->same(symbol).empty();
+        if (own && (name.size() > 1 || !rewritten_.contains(symbol))) declared_.insert(name);
+        return name;
+    }
     if (is_renamed(symbol)) {
         name = symbol[0] == '~' ? "Surface_" : symbol[0] == '@' ? "At_" : symbol_name(symbol[0]);
         for (const char c : std::string_view(symbol).substr(1))
@@ -93,13 +137,18 @@ std::string CpfgWords::name_of(const std::string& symbol) {
 
 std::string CpfgWords::text_of(const CpfgString& string, Span span, Use use) {
     std::string text;
-    for (const CpfgModule& module : string)
-        text += text_of(module, span, use);
+    for (const CpfgModule& module : string) {
+        const std::string next = text_of(module, span, use);
+        // Letters beside each other may make up a name.
+        const bool joins = has_long_names_ && !text.empty() && !next.empty() && is_cpfg_name(text.back()) &&
+                           (is_cpfg_name(next[0]) || next[0] == '.');
+        text += (joins ? " " : "") + next;
+    }
     return text;
 }
 
 std::string CpfgWords::text_of(const CpfgModule& module, Span span, Use use) {
-    if (use == Use::drawn && module.symbol == "%") return ""; // cpfg cuts nothing there
+    if (use == Use::drawn && module.symbol == "%" && !names_.dialect()) return ""; // cpfg cuts nothing there
     const bool otherwise = drawn_otherwise_.contains({module.symbol, module.parameters.size()});
     if (use == Use::word && is_renamed(module.symbol)) {
         stand_ins_.insert({module.symbol, module.parameters.size()});
@@ -156,6 +205,12 @@ std::string CpfgWords::default_parameter(const std::string& symbol, Span span) {
 /// The text that tells our turtle what the module tells cpfg's.
 std::string CpfgWords::own_text_of(const CpfgModule& module, Span span, bool other_arity) {
     const std::string& symbol = module.symbol;
+    if (const CpfgDialect* const dialect = names_.dialect()) {
+        if (const std::optional<std::string> told = dialect->told(module, span)) return *told;
+        if (is_one_of(symbol, brackets)) return symbol;
+        const std::string same = dialect->same(symbol);
+        return (same.empty() ? name_of(symbol) : same) + parameters(module, span, other_arity);
+    }
     if (symbol[0] == '@' && symbol.size() > 1) return directive(module, span);
     if (symbol[0] == '~') return surface(module, span);
     if (symbol[0] == '?') return query(module, span);

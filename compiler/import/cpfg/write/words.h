@@ -47,6 +47,8 @@ class CpfgWords {
     enum class Use { word, drawn };
 
     bool is_renamed(const std::string& symbol) const;
+    void find_told();
+    std::string name_in_dialect(const std::string& symbol) const;
     std::string text_of(const CpfgString& string, Span span, Use use);
     std::string text_of(const CpfgModule& module, Span span, Use use);
     std::string own_text_of(const CpfgModule& module, Span span, bool other_arity);
@@ -65,6 +67,8 @@ class CpfgWords {
     using WithParameters = std::set<std::pair<std::string, std::size_t>>; ///< symbols, numbers of parameters
     std::set<std::string> mentioned_; ///< symbols that productions look at
     std::set<std::string> rewritten_; ///< symbols that begin a predecessor
+    std::set<std::string> told_;      ///< symbols of a dialect that several of ours stand for
+    bool has_long_names_ = false;     ///< so that names beside each other need blanks
     WithParameters drawn_otherwise_;  ///< symbols drawn by the homomorphism
     WithParameters stand_ins_;
     std::set<std::string> declared_;

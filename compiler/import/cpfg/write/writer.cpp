@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/cpfg/dialect.h"
 #include "compiler/import/cpfg/string.h"
 #include "compiler/import/cpfg/write/environment.h"
 #include "compiler/import/cpfg/write/variables.h"
@@ -33,11 +34,12 @@ class SystemWriter {
           variables_(names, system) {}
 
     Translation write() {
-        share_probabilities();
+        if (!names_.dialect()) share_probabilities();
         const Translation body = write_body();
         const std::string filter = filter_text();
         Translation out{"lsys", {}, {}};
         comments(out, system_.head_comments, "");
+        write_own_lines(out, &CpfgDialect::head);
         for (const char letter : words_.surfaces())
             out.line(fmt::format("use {} = \"{}\"", CpfgWords::surface_name(letter),
                                  names_.view().surfaces.at(letter).file));
@@ -50,6 +52,7 @@ class SystemWriter {
         if (names_.view().width && !names_.view().width_in_pixels)
             out.line(fmt::format("  width {}", *names_.view().width));
         write_tropisms(out);
+        write_own_lines(out, &CpfgDialect::settings);
         if (!system_.length.empty()) out.line("  steps " + system_.length, system_.length_span);
         if (!system_.seed.empty()) out.line("  seed " + system_.seed, system_.seed_span);
         if (body.text.find("?E") != std::string::npos) write_environment(out);
@@ -63,6 +66,12 @@ class SystemWriter {
     }
 
   private:
+    void write_own_lines(Translation& out, std::vector<std::string> CpfgDialect::*lines) const {
+        if (!names_.dialect()) return;
+        for (const std::string& line : names_.dialect()->*lines)
+            out.line(line);
+    }
+
     std::vector<CpfgProduction>& productions(CpfgSection section) { return system_.productions[section]; }
 
     /// cpfg chooses by the shares of the probabilities in their sum.
@@ -270,13 +279,22 @@ class SystemWriter {
                              "a right context that sees through ignored brackets has no translation");
     }
 
+    /// A dialect lists its symbols with blanks between them.
+    CpfgString filtered_modules() {
+        if (!names_.dialect()) return read_cpfg_string(system_.filter_symbols, names_, system_.filter_span);
+        CpfgString modules;
+        std::istringstream words(system_.filter_symbols);
+        for (std::string word; words >> word;)
+            modules.emplace_back().symbol = word;
+        return modules;
+    }
+
     std::string filter_text() {
         if (system_.filter.empty()) return "";
         check_brackets();
         std::set<std::string> names;
         std::string text;
-        for (const CpfgModule& module :
-             read_cpfg_string(system_.filter_symbols, names_, system_.filter_span)) {
+        for (const CpfgModule& module : filtered_modules()) {
             if (std::string_view("[]{}").find(module.symbol) != std::string_view::npos) continue;
             const std::string name = words_.name_of(module.symbol);
             if (names.insert(name).second) text += " " + name;

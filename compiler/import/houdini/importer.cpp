@@ -1,0 +1,61 @@
+#include "compiler/import/houdini/importer.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "compiler/import/foreign_text.h"
+#include "compiler/import/houdini/fields.h"
+#include "compiler/import/houdini/system.h"
+#include "compiler/support/path_text.h"
+
+namespace graftal {
+
+namespace {
+
+constexpr std::size_t most_houdini_bytes = 1'000'000;
+
+/// A model reaches from its premise to the next one; the first has what stands before it, too.
+std::vector<ForeignModel> houdini_models(const ForeignFile& file) {
+    const std::string_view text = file.text();
+    std::vector<std::size_t> begins;
+    for (const HoudiniLine& line : houdini_lines(text, 0, text.size()))
+        if (line.field == HoudiniField::premise) begins.push_back(begins.empty() ? 0 : line.line);
+    const std::string name(stem_of(file.sources.name(file.file)));
+    std::vector<ForeignModel> models;
+    for (std::size_t i = 0; i < begins.size(); ++i)
+        models.push_back({begins.size() == 1 ? name : fmt::format("{}_{}", name, i + 1),
+                          file.span(begins[i], i + 1 < begins.size() ? begins[i + 1] : text.size())});
+    return models;
+}
+
+/// A premise and a rule.
+bool is_houdini(std::string_view text) {
+    bool premise = false, rule = false;
+    for (const HoudiniLine& line : houdini_lines(text, 0, text.size())) {
+        premise = premise || line.field == HoudiniField::premise;
+        rule = rule || (premise && line.field == HoudiniField::rule);
+    }
+    return rule;
+}
+
+std::optional<Translation> translate_houdini(const ForeignFile& file, const ForeignModel& model) {
+    if (file.text().size() > most_houdini_bytes) {
+        file.diagnostics.error(
+            file.span(0, 0), fmt::format("a text of Houdini has at most {} characters", most_houdini_bytes));
+        return std::nullopt;
+    }
+    std::optional<HoudiniSystem> system = read_houdini(file, model);
+    if (!system) return std::nullopt;
+    return write_houdini(file, model, std::move(*system));
+}
+
+} // namespace
+
+Importer houdini_importer() {
+    return {"Houdini L-system", {},
+            is_houdini,         "lines 'Premise: ...' and 'Rule 1: symbol=replacement'",
+            houdini_models,     translate_houdini};
+}
+
+} // namespace graftal

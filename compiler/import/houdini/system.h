@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "compiler/import/cpfg/system.h"
+#include "compiler/import/importer.h"
+
+namespace graftal {
+
+/// Parameters of the node, with the values that a new node has.
+struct HoudiniSystem {
+    double angle_deg = 28, angle_scale = 0.9;
+    double step = 0.1, step_scale = 0.9;
+    double thickness_scale = 0.9;
+    std::optional<double> thickness;
+    double gravity = 10;
+    CpfgSystem system; ///< whose expressions are ours
+};
+
+/// The model between its places in the file; nothing after an error.
+std::optional<HoudiniSystem> read_houdini(const ForeignFile& file, const ForeignModel& model);
+
+/// The system as a model of ours; nothing after an error.
+std::optional<Translation> write_houdini(const ForeignFile& file, const ForeignModel& model,
+                                         HoudiniSystem system);
+
+} // namespace graftal

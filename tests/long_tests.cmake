@@ -38,6 +38,7 @@ foreach(test
   unit/lsys/LsysTime.waitingForEverEnds
   unit/lsys/LsysVariants.parametersAndUnequalChances
   unit/lsys/LsysVariants.stochasticPlantOfTheBook
+  unit/lsys/Skin.KeepsToALimitOfTriangles
   unit/points/CollageTest.CondensationCounts
   unit/points/CollageTest.MapsMayContractInAnotherNormOnly
   unit/points/CollageTest.TheBoundHolds

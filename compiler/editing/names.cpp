@@ -212,7 +212,7 @@ class Collector {
 
     void settings(const Scope& scope, const LsysBlock& block) {
         for (const auto* value : {&block.angle, &block.step, &block.width, &block.thickness, &block.thinnest,
-                                  &block.taper, &block.seed})
+                                  &block.taper, &block.skin, &block.seed})
             if (*value) expression(scope, (*value)->value);
         if (block.steps) expression(scope, block.steps->value);
         if (block.filter)

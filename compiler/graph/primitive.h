@@ -33,6 +33,7 @@ namespace graftal {
 //   polygon   (x1, y1, x2, y2, ...): outlines in the plane z = 0; points in an odd number of them are filled
 //   bicubic_patch  (x, y, z of 16 points): the bicubic Bezier surface of four rows of control points
 //   sphere_sweep  (x, y, z, r, ...): what a ball of varying radius sweeps along a smooth curve
+//   limb_sweep  (sides, collar, depth, x, y, z, r, ...): the skin of a limb about a chain of points
 //   mesh      ("file"): triangles, where the file has them
 // Each has a form, which says what makes a primitive of it.
 #define GRAFTAL_PRIMITIVE_KINDS(KIND)                                                                        \
@@ -48,6 +49,7 @@ namespace graftal {
     KIND(polygon, shaped)                                                                                    \
     KIND(bicubic_patch, shaped)                                                                              \
     KIND(sphere_sweep, shaped)                                                                               \
+    KIND(limb_sweep, shaped)                                                                                 \
     KIND(mesh, shaped)
 
 enum class PrimitiveForm : std::uint8_t {

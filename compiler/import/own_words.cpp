@@ -23,6 +23,7 @@ bool is_own_word(std::string_view word) {
                                                                   "polygon",
                                                                   "bicubic_patch",
                                                                   "sphere_sweep",
+                                                                  "limb_sweep",
                                                                   "mesh",
                                                                   "union",
                                                                   "intersection",

@@ -92,7 +92,7 @@ class Operands {
         else if (part.primitive && !encloses_volume(*part.primitive))
             error.with_hint(
                 "parts are made of spheres, cubes, cylinders, cones, frusta, tori, superellipsoids, "
-                "sphere sweeps, closed meshes, and planes as half spaces");
+                "sphere and limb sweeps, closed meshes, and planes as half spaces");
         else
             error.with_hint("scale it by more than 0 in all directions");
         return false;

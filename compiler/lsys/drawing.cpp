@@ -191,11 +191,15 @@ class Drawer {
                LsysStream::can_derive(grammar_) && can_draw_run();
     }
 
-    bool can_draw_run() const { return LsysStream::can_draw(grammar_) && palette_.size() < open_width; }
+    bool can_draw_run() const {
+        return LsysStream::can_draw(grammar_) && palette_.size() < open_width && grammar_.skin == 0;
+    }
 
     std::optional<LsysDrawing> compose(Graph& graph, ObjectPool& pool) {
         if (!choose_width(graph)) return std::nullopt;
-        Composition composition(*this, graph, pool, draws_lines(grammar_), models_);
+        // A part without the limbs that go on into it is no line.
+        Composition composition(*this, graph, pool, draws_lines(grammar_) && grammar_.skin == 0, models_);
+        composition.turtle.skin = grammar_.skin;
         std::optional<TurtlePart> part = composition.variant(0);
         if (!part) return std::nullopt;
         return drawing_of(*part, word_ ? "derived" : "composed", composition.composer.part_count());
@@ -345,6 +349,12 @@ class Drawer {
         if (const char* obstacle = obstacle_to_limit()) {
             diagnostics_
                 .error(grammar_.source->steps->span, fmt::format("productions {} have no limit", obstacle))
+                .with_hint("give 'steps N'");
+            return std::nullopt;
+        }
+        if (grammar_.skin > 0) {
+            diagnostics_
+                .error(grammar_.source->skin->span, "the limbs of a limit have no end, and so no skin")
                 .with_hint("give 'steps N'");
             return std::nullopt;
         }

@@ -235,6 +235,7 @@ constexpr PovrayPrimitive row_of(PrimitiveKind kind) {
         return {polygon_text, nullptr, nullptr, costs<320>, polygon_bytes, true};
     case PrimitiveKind::bicubic_patch:
     case PrimitiveKind::sphere_sweep:
+    case PrimitiveKind::limb_sweep:
     case PrimitiveKind::mesh:
         return {mesh_text, nullptr, nullptr, costs<323>, mesh_bytes, true};
     }

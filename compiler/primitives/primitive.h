@@ -131,7 +131,8 @@ struct PrimitiveTraits {
     /// The texture point of a point of the surface.
     TexturePoint (*texture_point)(const Primitive&, const TextureSpace&, Vec3 point);
     /// The texture points of a triangle of the mesh, where points alone do not say them; else null.
-    std::array<TexturePoint, 3> (*texture_triangle)(const Primitive&, const std::array<Vec3, 3>&) = nullptr;
+    std::array<TexturePoint, 3> (*texture_triangle)(const Primitive&, const TextureSpace&,
+                                                    const std::array<Vec3, 3>&) = nullptr;
 
     double (*area)(const Primitive&);
     /// The point of the surface that three numbers of [0, 1) choose; evenly spread numbers give evenly spread

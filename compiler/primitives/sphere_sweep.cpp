@@ -11,6 +11,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/primitives/swept_ring.h"
 #include "compiler/primitives/triangle_mesh.h"
 #include "compiler/support/number.h"
 
@@ -38,15 +39,6 @@ struct SweptBall {
     double radius;
 };
 
-/// A ball on the curve, and the direction of the curve there.
-struct Ring {
-    Vec3 centre;
-    double radius;
-    Vec3 along;   ///< of unit length
-    double slope; ///< change of the radius along the curve
-    Vec3 side;    ///< of unit length, at right angles to `along`: where the ring begins
-};
-
 /// The way through four points at a share of the way from the second to the third.
 Vec3 on_curve(const std::array<Vec3, 4>& p, double t) {
     return 0.5 * (2.0 * p[1] + t * (p[2] - p[0]) + t * t * (2.0 * p[0] - 5.0 * p[1] + 4.0 * p[2] - p[3]) +
@@ -67,29 +59,8 @@ double turn_of(const std::array<Vec3, 4>& p) {
     return turn;
 }
 
-Vec3 some_side(Vec3 along) {
-    const Vec3 other = std::abs(along.y) < 0.9 ? Vec3(0, 1, 0) : Vec3(1, 0, 0);
-    return glm::normalize(glm::cross(along, other));
-}
-
-/// Takes the side along the curve without turning it about the curve (W. Wang, B. Juttler, D. Zheng and Y.
-/// Liu, "Computation of Rotation Minimizing Frames", 2008: by two reflections).
-Vec3 moved_side(const Ring& from, const Ring& to) {
-    const Vec3 way = to.centre - from.centre;
-    const double length2 = glm::dot(way, way);
-    Vec3 side = from.side, along = from.along;
-    if (length2 > 0) {
-        side -= 2 / length2 * glm::dot(way, side) * way;
-        along -= 2 / length2 * glm::dot(way, along) * way;
-    }
-    const Vec3 turn = to.along - along;
-    if (const double turn2 = glm::dot(turn, turn); turn2 > 0) side -= 2 / turn2 * glm::dot(turn, side) * turn;
-    side -= glm::dot(side, to.along) * to.along;
-    return glm::length(side) > 0 ? glm::normalize(side) : some_side(to.along);
-}
-
-std::vector<Ring> rings_of(const std::vector<SweptBall>& balls) {
-    std::vector<Ring> rings;
+std::vector<SweptRing> rings_of(const std::vector<SweptBall>& balls) {
+    std::vector<SweptRing> rings;
     for (std::size_t i = 0; i + 1 < balls.size(); ++i) {
         const Vec3 a = balls[i].centre, b = balls[i + 1].centre;
         // Beyond its ends the curve goes on as it began.
@@ -102,7 +73,7 @@ std::vector<Ring> rings_of(const std::vector<SweptBall>& balls) {
             const double length = glm::length(speed);
             // The radius changes evenly from one point to the next.
             const double change = balls[i + 1].radius - balls[i].radius;
-            Ring ring{on_curve(p, t), balls[i].radius + t * change, glm::normalize(b - a), 0, Vec3(0.0)};
+            SweptRing ring{on_curve(p, t), balls[i].radius + t * change, glm::normalize(b - a), 0, Vec3(0.0)};
             if (length > 0) ring.along = speed / length;
             ring.slope = std::clamp(length > 0 ? change / length : 0, -most_slope, most_slope);
             ring.side = rings.empty() ? some_side(ring.along) : moved_side(rings.back(), ring);
@@ -114,7 +85,7 @@ std::vector<Ring> rings_of(const std::vector<SweptBall>& balls) {
 
 class SweepMesh {
   public:
-    explicit SweepMesh(const std::vector<Ring>& rings) {
+    explicit SweepMesh(const std::vector<SweptRing>& rings) {
         const double first = rings.front().slope, last = rings.back().slope;
         double length = 0;
         std::vector<double> at;
@@ -136,7 +107,7 @@ class SweepMesh {
     static double tilt(double pole, double ring, int row) { return pole + (ring - pole) * row / cap_rows; }
 
     /// The circle of the ball whose normals lie by an angle off the plane across the curve.
-    void add_ring(const Ring& ring, double tilt, double v) {
+    void add_ring(const SweptRing& ring, double tilt, double v) {
         const Vec3 third = glm::cross(ring.along, ring.side);
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
         for (int i = 0; i < sides; ++i) {

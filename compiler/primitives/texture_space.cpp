@@ -59,7 +59,7 @@ TexturePoint texture_coordinates(const Primitive& primitive, const TextureSpace&
 std::array<TexturePoint, 3> texture_coordinates(const Primitive& primitive, const TextureSpace& space,
                                                 const std::array<Vec3, 3>& points) {
     const PrimitiveTraits& traits = traits_of(primitive);
-    if (traits.texture_triangle) return traits.texture_triangle(primitive, points);
+    if (traits.texture_triangle) return traits.texture_triangle(primitive, space, points);
     const TextureWrap& wrap = traits.wrap;
     std::array<TexturePoint, 3> uv;
     for (std::size_t i = 0; i < 3; ++i)

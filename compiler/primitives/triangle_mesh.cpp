@@ -99,7 +99,7 @@ TriangleMesh::TriangleMesh(std::string name, MeshData mesh)
         areas.add(0.5 * glm::length(area_normal(triangle)));
 }
 
-MeshData without_slivers(const MeshData& data) {
+MeshData without_slivers(const MeshData& data, bool keeps_repeats) {
     MeshData kept;
     constexpr std::uint32_t unknown = UINT32_MAX;
     std::vector<std::uint32_t> number(data.vertices.size(), unknown);
@@ -114,7 +114,7 @@ MeshData without_slivers(const MeshData& data) {
             const auto& [d, e, f] = kept.triangles[other];
             return from_least_corner({kept.vertices[d], kept.vertices[e], kept.vertices[f]}) == place;
         };
-        if (places.find_or_add(hash_of(place), next, is_there) != next) continue;
+        if (!keeps_repeats && places.find_or_add(hash_of(place), next, is_there) != next) continue;
         std::array<std::uint32_t, 3> corners{};
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t old = data.triangles[i][k];
@@ -202,7 +202,8 @@ TexturePoint texture_point(const Primitive& primitive, const TextureSpace&, Vec3
 }
 
 /// On the corners of a seam two triangles have their own coordinates each.
-std::array<TexturePoint, 3> texture_triangle(const Primitive& primitive, const std::array<Vec3, 3>& points) {
+std::array<TexturePoint, 3> texture_triangle(const Primitive& primitive, const TextureSpace&,
+                                             const std::array<Vec3, 3>& points) {
     const TriangleMesh& form = form_of(primitive);
     const std::uint32_t number = triangle_at(form, (points[0] + points[1] + points[2]) / 3.0);
     return {texture_at(form, number, points[0]), texture_at(form, number, points[1]),

@@ -26,8 +26,9 @@ class TriangleMesh : public Shape {
 
 /// The mesh without triangles that have no area or repeat the corners, in order, of an earlier one. Vertices
 /// that no triangle has then go too. Normals get unit length; one that has none is that of a triangle at the
-/// vertex. Requires finite numbers.
-MeshData without_slivers(const MeshData& data);
+/// vertex. Requires finite numbers. `keeps_repeats`: only triangles without area go, so that what is closed
+/// stays closed where it lies on itself.
+MeshData without_slivers(const MeshData& data, bool keeps_repeats = false);
 
 /// The row of a kind whose shapes are all TriangleMesh, `arguments` and `make` apart.
 namespace triangle_mesh {
@@ -42,7 +43,8 @@ double inner_radius(const Primitive& primitive);
 bool keeps(const Primitive& primitive, const Affine& map);
 TessellatedPrimitive mesh(const Primitive& primitive, int fineness);
 TexturePoint texture_point(const Primitive& primitive, const TextureSpace& space, Vec3 point);
-std::array<TexturePoint, 3> texture_triangle(const Primitive& primitive, const std::array<Vec3, 3>& points);
+std::array<TexturePoint, 3> texture_triangle(const Primitive& primitive, const TextureSpace& space,
+                                             const std::array<Vec3, 3>& points);
 double area(const Primitive& primitive);
 SurfaceSite site(const Primitive& primitive, Vec3 choice);
 bool intersect(const Primitive& primitive, const Ray& ray, const RayRange& range, PrimitiveHit& hit);

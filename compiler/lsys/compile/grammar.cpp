@@ -13,6 +13,7 @@
 #include "compiler/lsys/compile/declarations.h"
 #include "compiler/lsys/compile/surroundings.h"
 #include "compiler/lsys/parse/commands.h"
+#include "compiler/primitives/limb_sweep.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
 #include "compiler/syntax/write_out.h"
@@ -135,6 +136,12 @@ class GrammarBuilder {
         grammar_.thinnest = size(block_.thinnest, "thinnest").value_or(0);
         grammar_.taper = setting(
             block_.taper, [](double x) { return x > 0 && x <= 1; }, "taper", "be above 0 and at most 1");
+        const auto skin = setting(
+            block_.skin, [](double x) { return x >= least_limb_tolerance && x <= most_limb_tolerance; },
+            "skin",
+            fmt::format("lie between {} and {}", shortest(least_limb_tolerance),
+                        shortest(most_limb_tolerance)));
+        if (skin) grammar_.skin = limb_sides(*skin);
         if (block_.thinnest && !block_.thickness)
             diagnostics_.error(block_.thinnest->span, "'thinnest' is the least width beside a 'thickness'");
         if (block_.width && block_.thickness)

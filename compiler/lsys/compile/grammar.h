@@ -124,12 +124,13 @@ struct LsysGrammar {
 
     double angle_deg = 90;
     double step = 1;
-    std::optional<double> width;            ///< nothing: automatic
-    std::optional<double> thickness;        ///< of segments, per length: in place of a width
-    double thinnest = 0;                    ///< then the least width
-    std::optional<double> taper;            ///< of widths from a branch to those that leave it
-    Vec3 tropism{0, -1, 0};                 ///< unit vector that `T` bends towards, in world space
-    std::vector<Vec3> other_tropisms;       ///< the same, of the second and all further ones
+    std::optional<double> width;      ///< nothing: automatic
+    std::optional<double> thickness;  ///< of segments, per length: in place of a width
+    double thinnest = 0;              ///< then the least width
+    std::optional<double> taper;      ///< of widths from a branch to those that leave it
+    int skin = 0;                     ///< sides of the skin of limbs; 0: segments are bodies of their own
+    Vec3 tropism{0, -1, 0};           ///< unit vector that `T` bends towards, in world space
+    std::vector<Vec3> other_tropisms; ///< the same, of the second and all further ones
     std::vector<TropismKind> tropism_kinds; ///< of all; empty: of one that is plain
     Bending bending = Bending::after_segments;
     std::optional<EnvironmentSettings> environment; ///< answers `?E`; without its seed

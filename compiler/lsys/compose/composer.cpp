@@ -19,6 +19,9 @@ namespace {
 /// Most rules of one kind that may follow each other without a step between them.
 constexpr unsigned most_repeated = 1000;
 
+/// A triangle of a skin takes as much work as so many instances.
+constexpr std::size_t instances_a_triangle = 8;
+
 /// Most tries, in all, of productions that wait for their time: some seconds of work.
 constexpr std::uint64_t most_waits = 10'000'000;
 
@@ -86,7 +89,11 @@ std::optional<TurtlePart> LsysComposer::run_from(Task first) {
     tasks_.clear();
     tasks_.push_back(std::move(first));
     if (!run_tasks()) return std::nullopt;
-    TurtlePart part = std::move(tasks_.back().turtle).finish();
+    Task& whole = tasks_.back();
+    if (context_.skin > 0) whole.turtle.end_limbs();
+    if (context_.skin > 0 && !whole.turtle.within_limits(whole.span)) return std::nullopt;
+    TurtlePart part = std::move(whole.turtle).finish();
+    if (context_.skin > 0) count_work(part);
     tasks_.pop_back();
     return part;
 }
@@ -278,6 +285,13 @@ void LsysComposer::clean_exit(TurtlePart& part) {
     part.exit_scale = sizes_known_.representative(part.exit_scale);
 }
 
+/// Work of a part that is composed, and of the skins of its limbs.
+void LsysComposer::count_work(const TurtlePart& part) {
+    const std::size_t before = std::exchange(skin_triangles_, context_.bodies.skin_triangles());
+    const std::size_t made = skin_triangles_ - before;
+    rewriter_.work_of_part(part.instances.size() + part.limb_node_count() + instances_a_triangle * made);
+}
+
 /// Places the last task, which has come to its end, in the one before.
 void LsysComposer::complete_piece() {
     Task task = std::move(tasks_.back());
@@ -286,7 +300,7 @@ void LsysComposer::complete_piece() {
     const bool is_branch = FoldedWord::is_branch(task.module);
     TurtlePart part = std::move(task.turtle).finish();
     clean_exit(part);
-    rewriter_.work_of_part(part.instances.size());
+    count_work(part);
     if (witness_) {
         witness_->enter(parent.frame);
         place_piece(parent.turtle, task.module, part, parent.span, 0);
@@ -393,7 +407,7 @@ void LsysComposer::complete_task() {
     std::optional<Instance> line = line_for(part, task);
     const Mat3 frame = context_.limit ? chord_frame(part.start_from_exit.translation) : Mat3(1.0);
     const std::size_t count = part.instances.size();
-    rewriter_.work_of_part(count);
+    count_work(part);
     part.instances =
         pool_.share(std::move(part.instances), std::move(line), name_of_part(task), task.span, frame);
     if (count > 1 && part.instances.size() == 1)
@@ -414,6 +428,7 @@ TurtleState LsysComposer::state_of(const Turtle& turtle, double& snap) {
         state.width = sizes_known_.representative(state.width);
         state.control_width = sizes_known_.representative(state.control_width);
     }
+    if (context_.skin > 0) state.limb_radius = sizes_known_.representative(state.limb_radius);
     if (context_.varies_step) state.ruler = sizes_known_.representative(state.ruler);
     if (context_.varies_angle) state.angle_factor = sizes_known_.representative(state.angle_factor);
     if (context_.two_headings) state.second = rotations_.representative(state.second);

@@ -155,6 +155,7 @@ class LsysComposer {
     std::optional<Instance> line_for(const TurtlePart& part, const Task& task);
     bool draw_piece(Task& task, ModuleId piece);
     void clean_exit(TurtlePart& part);
+    void count_work(const TurtlePart& part);
     void complete_piece();
     void complete_task();
     TurtleState state_of(const Turtle& turtle, double& snap);
@@ -179,6 +180,7 @@ class LsysComposer {
     double size_step_;
     bool steps_unit_;
     bool too_many_parts_ = false;
+    std::size_t skin_triangles_ = 0; ///< whose work is counted
     const FoldedWord* word_ = nullptr;
     WordWitness* witness_ = nullptr;
     std::vector<Task> tasks_;

@@ -70,6 +70,8 @@ bool LsysComposer::resize(Lookup& found, const Task& task, bool absolute) {
     else
         found.state.width = stepped(found.state.width, placing.width_error);
     found.state.control_width = sizes_known_.representative(found.state.control_width);
+    double collar_error = 0; // shapes a collar, and displaces nothing
+    found.state.limb_radius = stepped(found.state.limb_radius, collar_error);
     if (found.state.in_cylinder) found.state.control_point = representative(found.state.control_point);
     found.state.unit = steps_unit_ ? stepped(found.state.unit, placing.unit_error)
                                    : sizes_known_.representative(found.state.unit);

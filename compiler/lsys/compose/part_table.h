@@ -26,8 +26,8 @@ class PartTable {
     const TurtlePart* find(ModuleId module, Stage stage, const TurtleState& start) const;
 
     std::size_t size() const { return parts_.size(); }
-    /// Bytes of the parts, without those that they hold outside themselves.
-    std::size_t bytes() const { return parts_.size() * sizeof(KnownPart); }
+    /// Bytes of the parts and their limbs, without those that they hold elsewhere.
+    std::size_t bytes() const { return parts_.size() * sizeof(KnownPart) + limb_nodes_ * sizeof(LimbNode); }
 
   private:
     struct PartKind {
@@ -46,6 +46,7 @@ class PartTable {
     IdTable part_ids_;
     std::vector<PartKind> kinds_;
     IdTable kind_ids_;
+    std::size_t limb_nodes_ = 0;
 };
 
 } // namespace graftal

@@ -105,7 +105,7 @@ struct LsysProduction {
     Span span;                                       ///< from the label or the first module to the arrow
 };
 
-/// `angle`, `step`, `width`, `thickness` or `seed`.
+/// `angle`, `step`, `width`, `thickness`, `skin` or `seed`.
 struct LsysValue {
     Expression value;
     Span span; ///< of the keyword
@@ -161,6 +161,7 @@ struct LsysBlock {
     std::optional<LsysValue> thickness;
     std::optional<LsysValue> thinnest;
     std::optional<LsysValue> taper;
+    std::optional<LsysValue> skin;
     std::optional<LsysValue> seed;
     std::optional<LsysSteps> steps;
     std::optional<LsysContextFilter> filter;

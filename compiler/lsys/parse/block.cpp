@@ -119,6 +119,7 @@ class BlockParser {
         if (word == "thickness") return parse_value(statement, block_.thickness);
         if (word == "thinnest") return parse_value(statement, block_.thinnest);
         if (word == "taper") return parse_value(statement, block_.taper);
+        if (word == "skin") return parse_value(statement, block_.skin);
         if (word == "seed") return parse_value(statement, block_.seed);
         if (word == "steps") return parse_steps(statement);
         if (word == "ignore" || word == "consider") return parse_filter(statement);

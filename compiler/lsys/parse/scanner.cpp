@@ -30,10 +30,10 @@ std::optional<LsysSection> section_named(std::string_view word) {
 /// Statements that are made of the words of all languages, with their comments and strings.
 bool has_values(std::string_view word) {
     static const std::vector<std::string_view> words = {
-        "let",     "inner",      "angle",    "step",    "width",      "steps",       "seed",
-        "tropism", "thickness",  "thinnest", "bending", "torque",     "environment", "table",
-        "colors",  "modules",    "camera",   "light",   "background", "ground",      "material",
-        "use",     "precedence", "variable", "array",   "start",      "end",         "taper"};
+        "let",       "inner",    "angle",      "step",   "width",       "steps", "seed",       "tropism",
+        "thickness", "thinnest", "bending",    "torque", "environment", "table", "colors",     "modules",
+        "camera",    "light",    "background", "ground", "material",    "use",   "precedence", "variable",
+        "array",     "start",    "end",        "taper",  "skin"};
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
@@ -41,11 +41,10 @@ bool has_values(std::string_view word) {
 
 const std::vector<std::string>& lsys_keywords() {
     static const std::vector<std::string> keywords = {
-        "let",       "inner",      "angle",        "step",      "width",        "steps",
-        "seed",      "ignore",     "consider",     "tropism",   "colors",       "modules",
-        "thickness", "thinnest",   "taper",        "bending",   "torque",       "environment",
-        "table",     "precedence", "variable",     "array",     "start",        "end",
-        "axiom",     "interpret",  "homomorphism", "decompose", "decomposition"};
+        "let",      "inner",   "angle",       "step",         "width",      "steps",        "seed",  "ignore",
+        "consider", "tropism", "colors",      "modules",      "thickness",  "thinnest",     "taper", "skin",
+        "bending",  "torque",  "environment", "table",        "precedence", "variable",     "array", "start",
+        "end",      "axiom",   "interpret",   "homomorphism", "decompose",  "decomposition"};
     return keywords;
 }
 

@@ -22,8 +22,8 @@ void connect_tables(LsysBlock& block, const ExpressionTables& tables) {
         for (SceneField& field : let.fields)
             for (Expression& value : field.values)
                 connect(value);
-    for (std::optional<LsysValue>* value :
-         {&block.angle, &block.step, &block.width, &block.thickness, &block.thinnest, &block.taper})
+    for (std::optional<LsysValue>* value : {&block.angle, &block.step, &block.width, &block.thickness,
+                                            &block.thinnest, &block.taper, &block.skin})
         if (*value) connect((*value)->value);
     for (LsysEnvironment& statement : block.environment)
         for (Expression& number : statement.numbers)

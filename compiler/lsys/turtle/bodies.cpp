@@ -10,7 +10,10 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/lsys/turtle/flat_model.h"
+#include "compiler/lsys/turtle/skin.h"
 #include "compiler/lsys/turtle/triangulate.h"
+#include "compiler/primitives/limb_sweep.h"
+#include "compiler/primitives/shape_parts.h"
 #include "compiler/support/number_range.h"
 
 namespace graftal {
@@ -146,6 +149,33 @@ void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double 
     const Mat3 linear(radius * x, y, radius * glm::cross(x, y / length));
     add(tapered(std::min(width, from_width) / (2 * radius)), {linear, thick}, colour, span, sink);
     add_sphere(start_from_turtle, width, colour, span, sink);
+}
+
+void TurtleBodies::find_limbs() {
+    for (; known_limbs_ < graph_.objects.size(); ++known_limbs_) {
+        const Object& object = graph_.objects[known_limbs_];
+        if (object.primitive != PrimitiveKind::limb_sweep) continue;
+        if (limbs_.emplace(object.name, known_limbs_).second)
+            skin_triangles_ += limb_triangles(*object.primitive);
+    }
+}
+
+void TurtleBodies::add_limb(const Limb& limb, int sides, BodySink sink) {
+    const std::optional<LimbSkin> skin = skin_of(limb, sides);
+    if (!skin || skin_triangles_ > most_skin_triangles) return;
+    find_limbs();
+    const std::string name = shape_name(PrimitiveKind::limb_sweep, skin->numbers);
+    if (!limbs_.contains(name)) {
+        std::string fault;
+        Object object;
+        object.name = name;
+        object.primitive = traits_of(PrimitiveKind::limb_sweep).make(skin->numbers, fault);
+        if (!object.primitive) return; // too thin for numbers
+        graph_.add(std::move(object));
+        find_limbs();
+    }
+    sink.instances.push_back(
+        {limbs_.at(name), skin->start_from_skin, Tint(), material(limb.colour), limb.span});
 }
 
 std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {

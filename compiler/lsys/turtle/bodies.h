@@ -5,12 +5,14 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "compiler/graph/graph.h"
 #include "compiler/graph/run.h"
+#include "compiler/lsys/turtle/limb.h"
 #include "compiler/lsys/turtle/model_placer.h"
 #include "compiler/lsys/turtle/witness.h"
 
@@ -25,6 +27,9 @@ struct BodySink {
 
 /// The mark in RunItem::colour of bodies of open width, until widen() has been called.
 inline constexpr std::uint16_t open_width = 1u << 15;
+
+/// Most triangles of the skins of a model's limbs; each takes about 200 bytes.
+inline constexpr std::size_t most_skin_triangles = 4'000'000;
 
 /// Makes the instances of what a turtle draws. A turtle's frame has x to its right, y ahead, and z up, so
 /// that the canonical cylinder is a segment.
@@ -51,6 +56,8 @@ class TurtleBodies {
     /// taper is rounded to 1/128 (primitive.h).
     void add_taper(const Affine& start_from_turtle, Vec3 from, double from_width, double width, int colour,
                    Span span, BodySink sink);
+    /// One smooth body around a chain of segments, with rings of so many sides. Equal ones are made once.
+    void add_limb(const Limb& limb, int sides, BodySink sink);
     /// The body in place of a line from the start to `end` that is too small to see: as thick as it is long,
     /// so that fine curves stay visible. Nothing if the points are equal.
     std::optional<Instance> line(Vec3 end, int colour, Span span);
@@ -61,6 +68,7 @@ class TurtleBodies {
     void add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span, BodySink sink);
 
     std::size_t packed_count() const { return run_ ? run_->size() : 0; } ///< items
+    std::size_t skin_triangles() const { return skin_triangles_; }       ///< of all limbs
     /// Makes packed bodies that are marked by open_width thicker by a factor, and takes the marks away.
     void widen_packed(double factor);
     /// The packed bodies, if there are any. Requires that nothing is added afterwards.
@@ -76,12 +84,17 @@ class TurtleBodies {
         sink.instances.push_back(body(primitive, place, colour, span));
     }
 
+    void find_limbs();
+
     Graph& graph_;
     std::vector<Material> palette_;              ///< not empty
     std::vector<std::optional<MaterialId>> ids_; ///< of the palette's materials used so far
     std::shared_ptr<Run> run_;                   ///< of round bodies, or null
     WordWitness* witness_ = nullptr;
     std::unordered_map<Primitive, ObjectId> primitives_; ///< primitives used so far
+    std::unordered_map<std::string, ObjectId> limbs_;    ///< skins, by their names,
+    ObjectId known_limbs_ = 0;                           ///< among so many objects of the graph
+    std::size_t skin_triangles_ = 0;
 };
 
 } // namespace graftal

@@ -165,6 +165,7 @@ void Turtle::go_to(std::span<const double> parameters) {
     start_from_turtle_.translation = state_.frame->origin + state_.frame->unit * (state_.frame->axes * place);
     part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation));
     way_ += glm::length(start_from_turtle_.translation - before);
+    if (context_.skin > 0) set_limb_radius(0);
     part_.longest_way = std::max(part_.longest_way, way_);
 }
 

@@ -28,6 +28,7 @@ void Turtle::append(const TurtlePart& part, Span span, const Placing& given) {
     unit_shift_ += placing.absolute ? length : scale * part.unit_sensitivity.exit_shift;
     if (part.writes & reads_width) take_exit_width(part, placing);
     if (part.writes & reads_colour) state_.colour = part.exit.colour;
+    if (part.writes & reads_limb) state_.limb_radius = scale * part.exit.limb_radius;
     if (part.writes & reads_elasticity) state_.elasticity = part.exit.elasticity;
     if (part.writes & reads_cylinder) state_.in_cylinder = part.exit.in_cylinder;
     if (part.writes & reads_control) {
@@ -118,6 +119,7 @@ void Turtle::append_branch(const TurtlePart& part, Span span, const Placing& giv
             start_from_turtle_ * Affine{scale * place.linear, scale * place.translation};
     }
     append_polygons(part, scale, span);
+    if (context_.skin > 0) append_limbs(part, scale, span);
     part_.reach = std::max(part_.reach, glm::length(start_from_turtle_.translation) + scale * part.reach);
     part_.has_bodies = part_.has_bodies || part.has_bodies;
     if (context_.tallies) part_.lengths.add(part.lengths, scale);

@@ -19,6 +19,7 @@ TurtleState scaled(TurtleState state, double factor) {
     state.unit *= factor;
     state.control_point *= factor;
     state.control_width *= factor;
+    state.limb_radius *= factor;
     if (state.frame) state.frame = std::make_shared<TurtleFrame>(seen_from(*state.frame, {}, 1 / factor));
     return state;
 }
@@ -39,6 +40,7 @@ bool equal(const TurtleState& a, const TurtleState& b, TurtleStateMask mask) {
            (!(mask & reads_second) || a.second == b.second) &&
            (!(mask & reads_birth) || a.birth == b.birth) && (!(mask & reads_unit) || a.unit == b.unit) &&
            (!(mask & reads_cylinder) || a.in_cylinder == b.in_cylinder) &&
+           (!(mask & reads_limb) || a.limb_radius == b.limb_radius) &&
            (!(mask & reads_control) ||
             (a.control_point == b.control_point && a.control_width == b.control_width)) &&
            (!(mask & reads_tropisms) || equal_tropisms(*a.frame, *b.frame)) &&
@@ -66,6 +68,7 @@ std::uint64_t hash(const TurtleState& state, TurtleStateMask mask) {
         hash = mixed_number(mixed_vector(hash, {state.second.x, state.second.y, state.second.z}),
                             state.second.w);
     if (mask & reads_cylinder) hash = mixed(hash, state.in_cylinder);
+    if (mask & reads_limb) hash = mixed_number(hash, state.limb_radius);
     if (mask & reads_control)
         hash = mixed_number(mixed_vector(hash, state.control_point), state.control_width);
     if (mask & reads_tropisms) hash = hash_of_tropisms(hash, *state.frame);

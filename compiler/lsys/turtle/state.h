@@ -27,6 +27,7 @@ struct TurtleState {
     bool in_cylinder = false; ///< a generalised one
     Vec3 control_point{0.0};  ///< its last, in the frame of the start
     double control_width = 0;
+    double limb_radius = 0;    ///< of the limb that comes to here, where limbs get a skin; 0: none does
     std::uint32_t variant = 0; ///< of what is random (compose/composer.h)
     std::uint32_t birth = 0;   ///< the step in which the module came into being
     double unit = 1;           ///< how long a length of 1 is that the model writes (compose/composer.h)
@@ -64,6 +65,7 @@ enum TurtleStateBit : TurtleStateMask {
     reads_axes = 131072,    ///< of the world
     reads_origin = 262144,  ///< and its unit
     reads_tapers = 524288,
+    reads_limb = 1048576, ///< the radius of the one that comes to here
 };
 
 /// The state in a frame in which all is this many times as long.

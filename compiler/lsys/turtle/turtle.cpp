@@ -241,6 +241,12 @@ bool Turtle::within_limits(Span span) {
             .with_hint("use fewer steps to draw fewer parts");
         return false;
     }
+    if (context_.bodies.skin_triangles() > most_skin_triangles) {
+        context_.diagnostics
+            .error(span, fmt::format("the skin of the limbs has more than {} triangles", most_skin_triangles))
+            .with_hint("give 'skin' a larger tolerance, or use fewer steps");
+        return false;
+    }
     if (longest_polygon_ > max_polygon_vertices) {
         context_.diagnostics.error(span,
                                    fmt::format("a polygon has more than {} vertices", max_polygon_vertices));
@@ -270,9 +276,14 @@ void Turtle::move(std::span<const double> parameters, bool absolute, bool draw, 
     if (absolute) unit_shift_ += std::abs(length);
     if (draw && context_.draws && !fills && !(note(reads_cylinder), state_.in_cylinder)) {
         const double width = line_width(length);
-        context_.bodies.add_segment(start_from_turtle_, length, width, read_colour(), span, sink(true));
+        if (context_.skin > 0)
+            add_segment_to_limb(length, width, span);
+        else
+            context_.bodies.add_segment(start_from_turtle_, length, width, read_colour(), span, sink(true));
         note_radius(width / 2, width_source_);
         if (context_.tallies && length != 0) part_.lengths.add(std::abs(length));
+    } else if (context_.skin > 0 && length != 0 && !(note(reads_cylinder), state_.in_cylinder)) {
+        set_limb_radius(0);
     }
     part_.unit_sensitivity.farthest = std::max(part_.unit_sensitivity.farthest, unit_shift_);
     start_from_turtle_.translation += length * start_from_turtle_.linear[1];
@@ -333,12 +344,16 @@ void Turtle::cut() {
 void Turtle::open_branch() {
     branches_.push_back({start_from_turtle_, state_, writes_, error_, sensitivity_, way_, size_shift_,
                          unit_shift_, width_error_, scale_, second_, mirrored_, width_source_,
-                         polygons_.size()});
+                         polygons_.size(), context_.skin > 0 ? branch_off() : Limb()});
     if (context_.taper < 1) taper();
 }
 
 void Turtle::close_branch() {
     if (branches_.empty()) return;
+    if (context_.skin > 0) {
+        end_limb();
+        limb_ = std::move(branches_.back().limb);
+    }
     start_from_turtle_ = branches_.back().start_from_turtle;
     const std::uint32_t open_polygons = state_.open_polygons; // no branch closes or opens them again
     state_ = branches_.back().state;
@@ -389,6 +404,7 @@ void Turtle::start_cylinder() {
     state_.control_point = start_from_turtle_.translation;
     state_.control_width = usual_diameter();
     writes_ |= reads_cylinder | reads_control;
+    if (context_.skin > 0) set_limb_radius(state_.control_width / 2);
 }
 
 /// Adds a control point, or the end: draws the piece of the cylinder that reaches to here.
@@ -398,8 +414,13 @@ void Turtle::add_control_point(Span span) {
     note(reads_control);
     if (!context_.draws) return start_cylinder();
     const double width = usual_diameter();
-    context_.bodies.add_taper(start_from_turtle_, state_.control_point, state_.control_width, width,
-                              read_colour(), span, sink(true));
+    const LimbNode from{state_.control_point, state_.control_width / 2};
+    const LimbNode to{start_from_turtle_.translation, width / 2};
+    if (context_.skin == 0)
+        context_.bodies.add_taper(start_from_turtle_, from.place, state_.control_width, width, read_colour(),
+                                  span, sink(true));
+    else if (from.place != to.place && std::max(from.radius, to.radius) > 0)
+        extend_limb(from, to, read_colour(), span);
     for (const WidthSource source : {WidthSource::start, WidthSource::unit, WidthSource::sizes})
         note_radius(std::max(width, state_.control_width) / 2, source); // its two widths may have any
     start_cylinder();
@@ -432,6 +453,7 @@ TurtlePart Turtle::finish() && {
     if (writes_ & reads_second)
         part_.exit.second = glm::quat_cast(glm::transpose(start_from_turtle_.linear) * second_);
     part_.polygons = std::move(polygons_);
+    if (context_.skin > 0) part_.limbs.push_back(std::move(limb_));
     part_.exit_way = way_;
     part_.error = {error_.turn, error_.shift, part_.error.farthest};
     part_.size_error.exit_shift = size_shift_;

@@ -9,6 +9,7 @@
 #include "compiler/lsys/parse/turtle_command.h"
 #include "compiler/lsys/turtle/bodies.h"
 #include "compiler/lsys/turtle/length_tally.h"
+#include "compiler/lsys/turtle/limb.h"
 #include "compiler/lsys/turtle/model_placer.h"
 #include "compiler/lsys/turtle/state.h"
 #include "compiler/support/big_count.h"
@@ -43,11 +44,14 @@ struct TurtlePart {
     std::vector<PolygonEnd> polygon_ends;
     std::vector<Vec3> vertices;              ///< for the polygon that is then the innermost
     std::vector<std::vector<Vec3>> polygons; ///< left open, with their vertices
-    Affine start_from_exit;                  ///< without the scale
-    double exit_scale = 1;                   ///< of what follows
-    bool mirrors = false;                    ///< the exit is a mirror image
-    TurtleState exit;                        ///< the members of `writes` only
-    TurtleStateMask reads = 0;               ///< before they were written
+    /// With a skin: the limb that goes on with the one at the start; then, if that ends in the part, the one
+    /// that is open at the exit.
+    std::vector<Limb> limbs;
+    Affine start_from_exit;    ///< without the scale
+    double exit_scale = 1;     ///< of what follows
+    bool mirrors = false;      ///< the exit is a mirror image
+    TurtleState exit;          ///< the members of `writes` only
+    TurtleStateMask reads = 0; ///< before they were written
     TurtleStateMask writes = 0;
     bool cut = false;        ///< the rest of the branch is cut off
     double reach = 0;        ///< the turtle goes no farther from the start
@@ -67,6 +71,13 @@ struct TurtlePart {
     BigCount modules = 0;
     BigCount segments = 0;
     BigCount bodies = 0; ///< spheres, discs, models and polygons
+
+    std::size_t limb_node_count() const {
+        std::size_t count = 0;
+        for (const Limb& limb : limbs)
+            count += limb.nodes.size();
+        return count;
+    }
 };
 
 /// The way in which a part is placed.
@@ -98,6 +109,7 @@ struct TurtleContext {
     bool two_headings = false;             ///< symbols exchange them
     std::span<const TropismKind> tropisms; ///< empty: one that is plain
     Bending bending = Bending::after_segments;
+    int skin = 0;       ///< sides of the skin of limbs; 0: segments are bodies of their own
     bool draws = true;  ///< or only walks, for queries
     bool lines = false; ///< segments are strokes of a curve: small parts are drawn as lines
     bool limit = false; ///< only proportions count: lines are as thick as their lengths ask, and parts that
@@ -137,6 +149,9 @@ class Turtle {
     /// Begins and ends a branch, as `[` and `]` do.
     void open_branch();
     void close_branch();
+
+    /// Draws the limbs that are open, where a whole word ends. Requires a skin.
+    void end_limbs();
 
     /// Notes that what is drawn depends on state().variant.
     void read_variant() { note(reads_variant); }
@@ -184,6 +199,7 @@ class Turtle {
         bool mirrored;
         WidthSource width_source;
         std::size_t polygons = 0; ///< open ones
+        Limb limb;
     };
 
     /// Axes of the turtle, in the order of the columns of its frame.
@@ -231,6 +247,13 @@ class Turtle {
     void close_polygon(int colour, Span span);
     void record_vertex(Vec3 vertex);
     void append_polygons(const TurtlePart& part, double scale, Span span);
+    void extend_limb(const LimbNode& from, const LimbNode& to, int colour, Span span);
+    void add_segment_to_limb(double length, double width, Span span);
+    void stand_on(const LimbNode& node);
+    void set_limb_radius(double radius);
+    void end_limb();
+    Limb branch_off();
+    void append_limbs(const TurtlePart& part, double scale, Span span);
     void start_cylinder();
     void add_control_point(Span span);
 
@@ -257,6 +280,7 @@ class Turtle {
     double unit_shift_ = 0; ///< how far the place moves with the logarithm of the unit
     WidthSource width_source_ = WidthSource::start; ///< of the width now
     double width_error_ = 0;                        ///< of its logarithm, by parts before
+    Limb limb_{.base = Limb::Base::entry};          ///< that ends here
     std::vector<Branch> branches_;
     std::vector<std::vector<Vec3>> polygons_; ///< open ones, by their vertices
     std::size_t cut_depth_ = 0;               ///< 1 + branches opened since the cut; 0: no cut

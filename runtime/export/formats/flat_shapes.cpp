@@ -26,6 +26,7 @@ bool is_convex(PrimitiveKind kind) {
     case PrimitiveKind::polygon:
     case PrimitiveKind::bicubic_patch:
     case PrimitiveKind::sphere_sweep:
+    case PrimitiveKind::limb_sweep:
     case PrimitiveKind::mesh:
         return false;
     }

@@ -3,8 +3,8 @@ if exists("b:current_syntax")
   finish
 endif
 
-syntax keyword graftalStatement angle apart array background below bending by camera canonical chance codes colors condense consider contexts control count decompose decomposition difference do each else end environment except film follow ground haze homomorphism hue if ignore ink inner instance interpret intersection lean let light lsys main map material modules nothing object orbit over precedence preset probability repeat rifs scatter seed size sky start step steps table taper terminal text texture thickness thinnest torque tropism turn union use variable weights when while width with
-syntax keyword graftalShape bicubic_patch cone cube cylinder frustum mesh plane polygon sphere sphere_sweep superellipsoid torus triangle
+syntax keyword graftalStatement angle apart array background below bending by camera canonical chance codes colors condense consider contexts control count decompose decomposition difference do each else end environment except film follow ground haze homomorphism hue if ignore ink inner instance interpret intersection lean let light lsys main map material modules nothing object orbit over precedence preset probability repeat rifs scatter seed size skin sky start step steps table taper terminal text texture thickness thinnest torque tropism turn union use variable weights when while width with
+syntax keyword graftalShape bicubic_patch cone cube cylinder frustum limb_sweep mesh plane polygon sphere sphere_sweep superellipsoid torus triangle
 syntax keyword graftalChange color hsv matrix points projection rgb rotate scale shear tint translate
 syntax keyword graftalFunction abs acos asin atan atan2 ceil choose cos exp floor lerp log logistic max min mod normal pow random sign sin smooth sqrt tan
 syntax match graftalField "\<[a-z_]\+\ze\s*:"

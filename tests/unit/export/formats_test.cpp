@@ -74,6 +74,8 @@ TEST(Stl, SolidsAreWatertight) {
         {"swept.inst",
          "object m {\n superellipsoid(0.5, 1.5) rotate: x, 7\n sphere_sweep(0, 0, 0, 0.2, 1, 1, 0, "
          "0.1, 2, 0, 1, 0.3) scale: 1, 2, 1\n}\n"},
+        {"skin.lsys", "lsys m {\n skin 0.05\n width 0.4\n angle 33\n steps 5\n axiom A\n"
+                      " A -> F![+A]/(50)F![&!A]^(12)A\n}\n"},
         {"shrub.inst", shrub}};
     for (const auto& [name, text] : models) {
         Exporting exporting(name, text);

@@ -265,7 +265,7 @@ TEST(LsysErrors, statements) {
         {R"e(angel 60)e", R"e(m.lsys:3:1: error: unknown statement 'angel'
     angel 60
     ^~~~~
-    hint: did you mean 'angle'? known here: let, inner, angle, step, width, steps, seed, ignore, consider, tropism, colors, modules, thickness, thinnest, taper, bending, torque, environment, table, precedence, variable, array, start, end, axiom, interpret, decompose
+    hint: did you mean 'angle'? known here: let, inner, angle, step, width, steps, seed, ignore, consider, tropism, colors, modules, thickness, thinnest, taper, skin, bending, torque, environment, table, precedence, variable, array, start, end, axiom, interpret, decompose
 )e"},
         {R"e(F = F+F)e", R"e(m.lsys:3:3: error: expected '->', found '='
     F = F+F
@@ -510,7 +510,7 @@ axoim F
          R"e(m.lsys:2:1: error: unknown statement 'axoim'
     axoim F
     ^~~~~
-    hint: did you mean 'axiom'? known here: let, inner, angle, step, width, steps, seed, ignore, consider, tropism, colors, modules, thickness, thinnest, taper, bending, torque, environment, table, precedence, variable, array, start, end, axiom, interpret, decompose
+    hint: did you mean 'axiom'? known here: let, inner, angle, step, width, steps, seed, ignore, consider, tropism, colors, modules, thickness, thinnest, taper, skin, bending, torque, environment, table, precedence, variable, array, start, end, axiom, interpret, decompose
 )e"},
         {R"e(lsysx a {
 axiom ''

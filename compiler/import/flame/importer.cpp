@@ -263,8 +263,11 @@ class Writer {
                 }};
             const std::vector<Formula> formulas = formulas_of(variation, setting);
             if (formulas.empty() || ways.size() * formulas.size() > most_branches) {
-                file_.diagnostics.error(map.span,
-                                        fmt::format("the variation '{}' is not translated", variation));
+                file_.diagnostics.error(
+                    map.span,
+                    fmt::format("the variations of this map, with '{}', have no whole number of branches "
+                                "from 1 to {}",
+                                variation, most_branches));
                 return {};
             }
             const std::string mark = std::to_string(++variation_number);

@@ -121,7 +121,9 @@ std::optional<Flame> Reader::read(const pugi::xml_node& node) {
     if (centre.size() == 2) flame.centre = {centre[0], centre[1]};
     const std::vector<double> size = numbers_in(node.attribute("size").value());
     if (size.size() == 2) flame.width = size[0];
-    flame.scale = node.attribute("scale").as_double() *
+    // JWildfire enlarges by a factor, flam3 by a power of two.
+    const double factor = node.attribute("cam_zoom").as_double(1);
+    flame.scale = node.attribute("scale").as_double() * (factor > 0 && std::isfinite(factor) ? factor : 1) *
                   std::exp2(std::clamp(node.attribute("zoom").as_double(), -100.0, 100.0));
     flame.rotate = node.attribute("rotate").as_double();
     if (!std::isfinite(flame.rotate)) flame.rotate = 0;

@@ -174,7 +174,7 @@ std::vector<LimbRing> rings_of(const std::vector<Piece>& pieces, const Collar& c
 }
 
 /// The mesh, ring by ring from the near end to the far one. v is the length of the way in circumferences of
-/// the limb at its thickest, so that pictures keep their proportions; u is the share of the turn.
+/// the limb in the mean, so that pictures keep their proportions; u is the share of the turn.
 class LimbMesh {
   public:
     LimbMesh(const std::vector<LimbRing>& rings, const Collar& collar, int sides, double circumference,
@@ -306,7 +306,7 @@ std::string fault_of(std::span<const double> numbers) {
 std::optional<Primitive> make(std::span<const double> numbers, std::string& fault) {
     if (fault = fault_of(numbers); !fault.empty()) return std::nullopt;
     std::vector<LimbPoint> points;
-    double length = 0, thickest = 0, farthest = 0;
+    double length = 0, thickest = 0, farthest = 0, area = 0;
     for (std::size_t i = head_numbers; i < numbers.size(); i += 4) {
         const LimbPoint point{{numbers[i], numbers[i + 1], numbers[i + 2]}, numbers[i + 3]};
         if (!points.empty()) {
@@ -316,6 +316,7 @@ std::optional<Primitive> make(std::span<const double> numbers, std::string& faul
                 return std::nullopt;
             }
             length += step;
+            area += step * (points.back().radius + point.radius) / 2;
         }
         thickest = std::max(thickest, point.radius);
         farthest = std::max(farthest, largest_entry(point.place));
@@ -326,7 +327,7 @@ std::optional<Primitive> make(std::span<const double> numbers, std::string& faul
     collar.excess = collar.radius > 0 ? std::max(0.0, collar.radius - points.front().radius) : 0;
     const double extent = std::max({farthest, length, thickest, collar.radius});
     const LimbMesh surface(rings_of(pieces_of(points), collar, sides), collar, sides,
-                           2 * pi * std::max(thickest, least_radius * extent), extent);
+                           2 * pi * std::max(area / length, least_radius * extent), extent);
     MeshData mesh = without_slivers(surface.mesh, true);
     if (mesh.triangles.empty()) {
         fault = "the limb sweep has no surface: its radii are too small";

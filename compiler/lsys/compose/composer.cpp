@@ -20,7 +20,7 @@ namespace {
 constexpr unsigned most_repeated = 1000;
 
 /// A triangle of a skin takes as much work as so many instances.
-constexpr std::size_t instances_a_triangle = 8;
+constexpr std::size_t instances_a_triangle = 4;
 
 /// Most tries, in all, of productions that wait for their time: some seconds of work.
 constexpr std::uint64_t most_waits = 10'000'000;

@@ -16,7 +16,7 @@ struct LimbNode {
 
 /// A chain of segments that gets one skin.
 struct Limb {
-    /// What the first node stands on.
+    /// The thing that the first node stands on.
     enum class Base : std::uint8_t {
         nothing, ///< the end is flat
         entry,   ///< whatever limb came in where the part begins, and goes on

@@ -62,7 +62,7 @@ void Turtle::stand_on(const LimbNode& node) {
              .base_way = start_from_turtle_.linear[1]};
 }
 
-/// Of the limb that comes to here; 0: none does.
+/// The radius is that of the limb that comes to here; 0: none does.
 void Turtle::set_limb_radius(double radius) {
     state_.limb_radius = radius;
     writes_ |= reads_limb;

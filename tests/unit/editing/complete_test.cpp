@@ -38,7 +38,7 @@ TEST(Complete, NamesWhereTheyAreKnown) {
     EXPECT_EQ(offered("m.rifs", "rifs a { map one {} map two {} follow o^ }"), "one");
     EXPECT_EQ(offered("m.rifs", "rifs a { map one {} map two {} follow one -> ^ }"), "one two");
     EXPECT_EQ(offered("m.rifs", "rifs other {} rifs a { map b from ^ {} }"), "other a");
-    EXPECT_EQ(offered("m.inst", "canonical object leaf { cube }\nobject a { union: l^ }"), "leaf");
+    EXPECT_EQ(offered("m.inst", "canonical object leaf { cube }\nobject a { union: l^ }"), "leaf limb_sweep");
     EXPECT_EQ(offered("m.inst", "material blue { }\nobject a { cube material: b^ }"), "blue bark");
     EXPECT_EQ(offered("m.inst", "canonical object tip(size) { instance: cube scale: si^ }"), "size sin sign");
     EXPECT_EQ(

@@ -65,8 +65,8 @@ inline std::vector<Primitive> sample_primitives() {
     samples.push_back(made_of(PrimitiveKind::sphere_sweep, {0, 0, 0, 0.5, 0, 2, 0, 0.5}));
     samples.push_back(made_of(PrimitiveKind::sphere_sweep, {0, 0, 0, 0.3, 0, 1, 0, 0.2, 1, 1.5, 0.5, 0.05}));
     samples.push_back(made_of(PrimitiveKind::limb_sweep, {12, 0, 0, 0, 0, 0, 0.4, 0, 1, 0, 0.4}));
-    samples.push_back(made_of(PrimitiveKind::limb_sweep, {9, 0.35, 0.1, 0, 0, 0, 0.3, 0, 0.5, 0, 0.25, 0.4,
-                                                          0.9, 0.2, 0.2, -0.1, 1.2, 0, 0.1}));
+    samples.push_back(made_of(PrimitiveKind::limb_sweep, {9, 0.35, 0.1, 0, 0, 0, 0.3, 0, 0.5, 0, 0.3, 0.4,
+                                                          0.9, 0.2, 0.28, 0.5, 1.1, 0.1, 0.24}));
     samples.push_back(mesh_primitive("tetrahedron.obj", tetrahedron()));
     return samples;
 }

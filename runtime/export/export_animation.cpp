@@ -1,6 +1,5 @@
 #include "runtime/export/export_animation.h"
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <system_error>
@@ -12,6 +11,7 @@
 #include "compiler/support/number.h"
 #include "runtime/export/formats/usd_text.h"
 #include "runtime/export/output_file.h"
+#include "runtime/render/stopwatch.h"
 
 namespace graftal {
 
@@ -64,7 +64,7 @@ Status write_frames(const AnimateOptions& animate, const std::vector<State>& sta
 AnimationOutcome export_animation(PictureSession& session, const AnimateOptions& animate,
                                   const ExportModelOptions& exported) {
     namespace fs = std::filesystem;
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     AnimationOutcome outcome;
     const auto fail = [&](Status status) {
         outcome.compilation.status = std::move(status);
@@ -108,7 +108,7 @@ AnimationOutcome export_animation(PictureSession& session, const AnimateOptions&
     const Status status = write_frames(animate, states, viewed->view, exported.file.unit_mm.value_or(1000));
     if (!status.ok()) return fail(status);
     outcome.done = true;
-    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    outcome.seconds = watch.seconds();
     return outcome;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "compiler/graph/components.h"
@@ -42,11 +43,40 @@ struct Imported {
         return all;
     }
 
+    /// Where the segments end.
+    std::vector<Vec3> ends() const {
+        EXPECT_TRUE(graph) << said();
+        std::vector<Vec3> all;
+        for (const auto& [from, to] : segments())
+            all.push_back(to);
+        return all;
+    }
+
+    /// The radii of the segments, in the order of the word.
+    std::vector<double> radii() const {
+        std::vector<double> all;
+        if (!graph) return all;
+        unfold(*graph, strong_components(*graph), std::nullopt, 100, [&](const UnfoldedLeaf& leaf) {
+            if (leaf.primitive && leaf.primitive->kind() == PrimitiveKind::cylinder)
+                all.push_back(glm::length(leaf.world_from_object.linear[0]));
+            return true;
+        });
+        return all;
+    }
+
+    /// The number of segments, or why there is none.
+    std::string segment_count() const { return derivation ? derivation->segments : said(); }
+
     SourceMap sources;
     Diagnostics diagnostics;
     std::optional<Graph> graph;
     std::optional<Derivation> derivation;
     std::string translation; ///< of the model itself
 };
+
+inline void expect_near(Vec3 a, Vec3 b) {
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(a[axis], b[axis], 1e-9) << "axis " << axis;
+}
 
 } // namespace graftal::testing

@@ -144,7 +144,7 @@ TEST(LimbSweep, PicturesRunOnByLengthAcrossItsPoints) {
         EXPECT_LE(most, 1);
     }
     EXPECT_GT(found, 100u);
-    // As often as the material says, in the same proportions.
+    // The picture goes round as often as the material says, in the same proportions.
     const Vec3 point(0.2, 0.25, 0.05);
     const TexturePoint once = texture_coordinates(straight, texture_space(straight, 1, 1), point);
     const TexturePoint thrice = texture_coordinates(straight, texture_space(straight, 3, 1), point);

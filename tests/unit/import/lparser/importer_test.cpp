@@ -12,16 +12,10 @@ using ::testing::HasSubstr;
 /// The ends of the segments of an axiom, per length of F.
 std::vector<Vec3> ends(const std::string& axiom) {
     const Imported model("a.ls", "0\n90\n10\n" + axiom + "\n@\n");
-    EXPECT_TRUE(model.graph) << model.said();
-    std::vector<Vec3> all;
-    for (const auto& [from, to] : model.segments())
-        all.push_back(to / 100.0);
+    std::vector<Vec3> all = model.ends();
+    for (Vec3& end : all)
+        end /= 100.0;
     return all;
-}
-
-void expect_near(Vec3 a, Vec3 b) {
-    for (int axis = 0; axis < 3; ++axis)
-        EXPECT_NEAR(a[axis], b[axis], 1e-9) << "axis " << axis;
 }
 
 TEST(Lparser, ReadsBothLayouts) {
@@ -67,12 +61,7 @@ TEST(Lparser, AnglesAreMultipliedAndOthersWritten) {
 TEST(Lparser, SegmentsAreAsThickAsTheirLengthSays) {
     const Imported model("a.ls", "0\n90\n50\nF'(.5)F!F\n@\n");
     ASSERT_TRUE(model.graph) << model.said();
-    std::vector<double> radii;
-    unfold(*model.graph, strong_components(*model.graph), std::nullopt, 100, [&](const UnfoldedLeaf& leaf) {
-        if (leaf.primitive->kind() == PrimitiveKind::cylinder)
-            radii.push_back(glm::length(leaf.world_from_object.linear[0]));
-        return true;
-    });
+    const std::vector<double> radii = model.radii();
     ASSERT_EQ(radii.size(), 3u);
     EXPECT_NEAR(radii[0], 25, 1e-9);
     EXPECT_NEAR(radii[1], 12.5, 1e-9);

@@ -22,20 +22,7 @@ Imported lpy(const std::string& axiom, const std::string& rules, const std::stri
 
 std::vector<Vec3> lpy_ends(const std::string& axiom) {
     const Imported model = lpy(axiom, "");
-    EXPECT_TRUE(model.graph) << model.said();
-    std::vector<Vec3> all;
-    for (const auto& [from, to] : model.segments())
-        all.push_back(to);
-    return all;
-}
-
-void expect_point(Vec3 a, Vec3 b) {
-    for (int axis = 0; axis < 3; ++axis)
-        EXPECT_NEAR(a[axis], b[axis], 1e-9) << "axis " << axis;
-}
-
-std::string lpy_segments(const Imported& model) {
-    return model.derivation ? model.derivation->segments : model.said();
+    return model.ends();
 }
 
 TEST(Lpy, KeepsNamesAndStructure) {
@@ -63,7 +50,7 @@ TEST(Lpy, KeepsNamesAndStructure) {
                                              "    Apex(s) -> @O(2*(s/2))\n"
                                              "  }\n"
                                              "}\n"));
-    EXPECT_EQ(lpy_segments(model), "7");
+    EXPECT_EQ(model.segment_count(), "7");
 }
 
 TEST(Lpy, HasTheCountsOfTheSameSystemByHand) {
@@ -73,36 +60,31 @@ TEST(Lpy, HasTheCountsOfTheSameSystemByHand) {
     const Imported by_hand("a.lsys",
                            "lsys a {\n steps 6\n axiom A(0)\n A(n) : n % 2 == 0 -> F[+A(n+1)]A(n+1)\n"
                            " A(n) -> FF[-A(n+1)]\n}\n");
-    EXPECT_EQ(lpy_segments(model), lpy_segments(by_hand));
+    EXPECT_EQ(model.segment_count(), by_hand.segment_count());
 }
 
 TEST(Lpy, TurnsAreThoseOfItsTurtle) {
     const double sine = std::sqrt(0.75);
-    expect_point(lpy_ends("+F(2)").back(), {-2 * sine, 1, 0});
-    expect_point(lpy_ends("Right(90)F(2)").back(), {2, 0, 0});
-    expect_point(lpy_ends("&(90)F").back(), {0, 0, -1});
-    expect_point(lpy_ends("Up(90)F").back(), {0, 0, 1});
-    expect_point(lpy_ends("/(90)^(90)F").back(), {1, 0, 0}); // up leans to the right
-    expect_point(lpy_ends("RollR(90)^(90)F").back(), {-1, 0, 0});
-    expect_point(lpy_ends("|F").back(), {0, -1, 0});
-    expect_point(lpy_ends("f(2)F(1)").back(), {0, 3, 0});
-    expect_point(lpy_ends("[+(90)F(1)]@Di(0.5)F(4)").back(), {0, 2, 0});
+    expect_near(lpy_ends("+F(2)").back(), {-2 * sine, 1, 0});
+    expect_near(lpy_ends("Right(90)F(2)").back(), {2, 0, 0});
+    expect_near(lpy_ends("&(90)F").back(), {0, 0, -1});
+    expect_near(lpy_ends("Up(90)F").back(), {0, 0, 1});
+    expect_near(lpy_ends("/(90)^(90)F").back(), {1, 0, 0}); // up leans to the right
+    expect_near(lpy_ends("RollR(90)^(90)F").back(), {-1, 0, 0});
+    expect_near(lpy_ends("|F").back(), {0, -1, 0});
+    expect_near(lpy_ends("f(2)F(1)").back(), {0, 3, 0});
+    expect_near(lpy_ends("[+(90)F(1)]@Di(0.5)F(4)").back(), {0, 2, 0});
     // The axes x, y, z are our z, x, y.
-    expect_point(lpy_ends("@M(1, 2, 3)F(1)").back(), {2, 4, 1});
-    expect_point(lpy_ends("SetHead(1, 0, 0, 0, 0, 1)F(1)").back(), {0, 0, 1});
-    expect_point(lpy_ends("F(1)nF(2, 0.1)").back(), {0, 3, 0});
+    expect_near(lpy_ends("@M(1, 2, 3)F(1)").back(), {2, 4, 1});
+    expect_near(lpy_ends("SetHead(1, 0, 0, 0, 0, 1)F(1)").back(), {0, 0, 1});
+    expect_near(lpy_ends("F(1)nF(2, 0.1)").back(), {0, 3, 0});
     EXPECT_THAT(lpy("{.F.+F.+F}(True)F", "").translation, HasSubstr("{.F.+F.+F}F"));
 }
 
 TEST(Lpy, WidthsAreRadii) {
     const Imported model = lpy("F(1)_(0.3)F(1)SetWidth(0.05)F(1)", "");
     ASSERT_TRUE(model.graph) << model.said();
-    std::vector<double> radii;
-    unfold(*model.graph, strong_components(*model.graph), std::nullopt, 100, [&](const UnfoldedLeaf& leaf) {
-        if (leaf.primitive->kind() == PrimitiveKind::cylinder)
-            radii.push_back(glm::length(leaf.world_from_object.linear[0]));
-        return true;
-    });
+    std::vector<double> radii = model.radii();
     ASSERT_EQ(radii.size(), 3u);
     std::ranges::sort(radii);
     EXPECT_NEAR(radii[0], 0.05, 1e-9);
@@ -112,17 +94,17 @@ TEST(Lpy, WidthsAreRadii) {
 }
 
 TEST(Lpy, RulesDecideByIf) {
-    EXPECT_EQ(lpy_segments(
-                  lpy("A(0)", "A(n):\n  if n < 2: produce FA(n+1)\n  elif n < 3:\n    produce FFA(n+1)\n")),
+    EXPECT_EQ(lpy("A(0)", "A(n):\n  if n < 2: produce FA(n+1)\n  elif n < 3:\n    produce FFA(n+1)\n")
+                  .segment_count(),
               "4");
     EXPECT_EQ(
-        lpy_segments(lpy(
-            "A(0)", "A(n):\n\tm = n + 1\n\tif m < 3 and not m == 9:\n\t\tm += 1\n\t\tproduce F(m)A(m)\n")),
+        lpy("A(0)", "A(n):\n\tm = n + 1\n\tif m < 3 and not m == 9:\n\t\tm += 1\n\t\tproduce F(m)A(m)\n")
+            .segment_count(),
         "1");
-    EXPECT_EQ(
-        lpy_segments(lpy("A(0)", "A(n):\n  nproduce F\n  if n > 1:\n    nproduce [+F]\n  produce A(n+1)\n")),
-        "6");
-    EXPECT_EQ(lpy_segments(lpy("A(0)B", "A(0) --> FFB\nB --> A(1)\nA(n) --> F\n")), "4");
+    EXPECT_EQ(lpy("A(0)", "A(n):\n  nproduce F\n  if n > 1:\n    nproduce [+F]\n  produce A(n+1)\n")
+                  .segment_count(),
+              "6");
+    EXPECT_EQ(lpy("A(0)B", "A(0) --> FFB\nB --> A(1)\nA(n) --> F\n").segment_count(), "4");
     const Imported model = lpy("A(1)", "A(x) :\n  y = x if 0 < x < 2 else 7\n  produce F(y**2 % 3)\n");
     EXPECT_THAT(model.translation, HasSubstr("F(mod((choose((0 < x && x < 2), x, 7))^2, 3))"));
 }
@@ -146,7 +128,7 @@ TEST(Lpy, ChanceHasItsShares) {
     const Imported one =
         lpy(std::string(2000, 'A'), "A :\n  if random() <= 0.3: produce F\n  else: produce FF\n");
     EXPECT_THAT(one.translation, HasSubstr("  A -> F : (0.3)\n  A -> FF : max(0, 1 - (0.3))\n"));
-    EXPECT_NEAR(std::stod(lpy_segments(one)), 600 + 2 * 1400, 120) << one.said();
+    EXPECT_NEAR(std::stod(one.segment_count()), 600 + 2 * 1400, 120) << one.said();
     const Imported three =
         lpy(std::string(2000, 'A'),
             "A :\n  r = rd.random()\n  if r < 0.2: produce F\n  elif r < 0.5: produce FF\n  else: "
@@ -154,7 +136,7 @@ TEST(Lpy, ChanceHasItsShares) {
             "import random as rd\n");
     EXPECT_THAT(three.translation, HasSubstr("  A -> F : (0.2)\n  A -> FF : max(0, 0.5 - (0.2))\n"
                                              "  A -> FFF : max(0, 1 - (0.5))\n"));
-    EXPECT_NEAR(std::stod(lpy_segments(three)), 400 + 2 * 600 + 3 * 1000, 200) << three.said();
+    EXPECT_NEAR(std::stod(three.segment_count()), 400 + 2 * 600 + 3 * 1000, 200) << three.said();
     EXPECT_THAT(lpy("A", "A --> F(uniform(1, 2))\n").translation, HasSubstr("F(random(1, 2))"));
     EXPECT_THAT(lpy("A", "A :\n  x = uniform(0, 1)\n  produce F(x)F(x)\n").said(),
                 HasSubstr("a number of chance is used twice"));
@@ -165,25 +147,25 @@ TEST(Lpy, ChanceHasItsShares) {
 TEST(Lpy, NumbersOfTheFileMayChangeEachStep) {
     const std::string before = "age = 0\ndef StartEach():\n  global age\n  age = age + 1\n";
     const Imported model = lpy("A", "A :\n  if age < 3: produce FA\n", before);
-    EXPECT_EQ(lpy_segments(model), "2") << model.translation;
+    EXPECT_EQ(model.segment_count(), "2") << model.translation;
     EXPECT_THAT(lpy("A", "A :\n  if age < 3: produce FA\n",
                     "age = 0\ndef StartEach():\n  global age\n  age = read('file')\n")
                     .said(),
                 HasSubstr("error: 'age' is Python that has no translation"));
-    EXPECT_EQ(lpy_segments(lpy("A", "A --> FA\n", "def End(string):\n  print(string)\n  string.save()\n")),
+    EXPECT_EQ(lpy("A", "A --> FA\n", "def End(string):\n  print(string)\n  string.save()\n").segment_count(),
               "4");
 }
 
 TEST(Lpy, ContextsAreThoseOfTheFile) {
-    EXPECT_EQ(lpy_segments(lpy("B+A+A", "ignore: +\nB < A --> B\ninterpretation:\nB --> F\n")), "3");
-    EXPECT_EQ(lpy_segments(lpy("BA+A", "B < A --> B\ninterpretation:\nB --> F\n")), "2");
-    EXPECT_EQ(lpy_segments(lpy("A(1)A(2)", "A(x) > A(y) : produce F(y)B\n")), "1");
+    EXPECT_EQ(lpy("B+A+A", "ignore: +\nB < A --> B\ninterpretation:\nB --> F\n").segment_count(), "3");
+    EXPECT_EQ(lpy("BA+A", "B < A --> B\ninterpretation:\nB --> F\n").segment_count(), "2");
+    EXPECT_EQ(lpy("A(1)A(2)", "A(x) > A(y) : produce F(y)B\n").segment_count(), "1");
 }
 
 TEST(Lpy, InterpretationsAreAppliedAsOftenAsTheySay) {
-    EXPECT_EQ(lpy_segments(lpy("A", "interpretation:\nA --> FB\nB --> FF\n")), "1");
-    EXPECT_EQ(lpy_segments(lpy("A", "interpretation:\nmaximum depth: 2\nA --> FB\nB --> FF\n")), "3");
-    EXPECT_EQ(lpy_segments(lpy("A", "A --> BA\ndecomposition:\nB --> FF\n")), "8");
+    EXPECT_EQ(lpy("A", "interpretation:\nA --> FB\nB --> FF\n").segment_count(), "1");
+    EXPECT_EQ(lpy("A", "interpretation:\nmaximum depth: 2\nA --> FB\nB --> FF\n").segment_count(), "3");
+    EXPECT_EQ(lpy("A", "A --> BA\ndecomposition:\nB --> FF\n").segment_count(), "8");
 }
 
 TEST(Lpy, RefusesPythonByItsLine) {

@@ -275,7 +275,7 @@ constexpr Row rows[] = {
     {bit(P::primitive), {"bicubic_patch", "bicubic_patch(x, y, z of 16 points)", "Bezier surface over four rows of four control points"}},
     {bit(P::primitive), {"sphere_sweep", "sphere_sweep(x1, y1, z1, r1, ...)", "body that a ball sweeps along a smooth curve: x, y, z and radius of 2 to 100 points"}},
     {bit(P::primitive), {"limb_sweep", "limb_sweep(sides, collar, depth, x1, y1, z1, r1, ...)", "closed skin of a limb about a chain of points: x, y, z and radius of 2 to 300 points"}},
-    {bit(P::primitive), {"mesh", "mesh \"FILE\"", "triangles of an OBJ or PLY file beside the model's file"}},
+    {bit(P::primitive), {"mesh", "mesh \"FILE\"", "triangles of an OBJ, PLY or STL file beside the model's file"}},
     {bit(P::environment), {"sphere", "environment sphere x, y, z, r", "`?E(d)` -> distance from the sphere, negative inside"}},
     {bit(P::environment), {"box", "environment box x, y, z, X, Y, Z", "the same for a box, by its least and its greatest corner"}},
     {bit(P::environment), {"plane", "environment plane a, b, c, d", "the same for all points with ax + by + cz <= d"}},

@@ -248,7 +248,7 @@ std::optional<Primitive> load_mesh(Span name_span, std::string_view path, Loweri
     std::optional<MeshData> data = read_mesh(bytes, fault);
     if (data) return known->second = mesh_primitive(*found, std::move(*data));
     add_chain(lowering.diagnostics.error(name_span, fmt::format("cannot read '{}': {}", *found, fault))
-                  .with_hint("a mesh is an OBJ or a PLY file"),
+                  .with_hint("a mesh is an OBJ, a PLY or an STL file"),
               lowering);
     return std::nullopt;
 }

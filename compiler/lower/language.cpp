@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "compiler/lower/lowering.h"
+#include "compiler/primitives/mesh_file.h"
 #include "compiler/support/path_text.h"
 #include "compiler/syntax/lexer.h"
 
@@ -124,7 +125,12 @@ std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering)
     const Span place = asked_for.file == file ? Span() : asked_for;
     if (!language) {
         lowering.diagnostics.error(place, fmt::format("'{}' is no model that is known here", name))
-            .with_hint(fmt::format("the names of models end in {}", extensions(lowering.languages)));
+            .with_hint(
+                is_mesh_name(name)
+                    ? fmt::format("a mesh is a part of a model: write 'object thing {{ mesh \"{}\" }}' "
+                                  "into an .inst file beside it",
+                                  file_name_of(name))
+                    : fmt::format("the names of models end in {}", extensions(lowering.languages)));
         return std::nullopt;
     }
     if (!looks_like_model(file, lowering.sources, lowering.languages)) {

@@ -9,6 +9,8 @@
 
 #include "compiler/primitives/mesh_file.h"
 #include "compiler/primitives/triangle_mesh.h"
+#include "compiler/support/path_text.h"
+#include "compiler/support/small_letters.h"
 
 namespace graftal {
 
@@ -17,17 +19,30 @@ std::string fault_of_coordinate(double coordinate) {
     return fmt::format("a coordinate is {}, and {} is the most", coordinate, most_mesh_coordinate);
 }
 
+bool is_mesh_name(std::string_view file_name) {
+    const std::string ending = in_small_letters(extension_of(file_name));
+    return ending == ".obj" || ending == ".ply" || ending == ".stl";
+}
+
 std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault) {
     const bool is_ply = bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
-    if (const std::size_t zero = bytes.find('\0'); !is_ply && zero != std::string_view::npos) {
-        fault = fmt::format("it is no OBJ or PLY mesh: byte {} is zero, as no text has it", zero + 1);
+    const bool is_binary = is_ply || is_binary_stl(bytes);
+    if (const std::size_t zero = bytes.find('\0'); !is_binary && zero != std::string_view::npos) {
+        fault = fmt::format("it is no OBJ, PLY or STL mesh: byte {} is zero, as no text has it, and a binary "
+                            "STL file of its number of triangles has {} bytes, not {}",
+                            zero + 1, binary_stl_size(bytes), bytes.size());
         return std::nullopt;
     }
-    std::optional<MeshData> data = is_ply ? read_ply(bytes, fault) : read_obj(bytes, fault);
+    const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
+    const bool is_stl = is_binary || in_small_letters(bytes.substr(begin, 5)) == "solid";
+    std::optional<MeshData> data = is_ply   ? read_ply(bytes, fault)
+                                   : is_stl ? read_stl(bytes, fault)
+                                            : read_obj(bytes, fault);
     if (!data) return std::nullopt;
     if (data->triangles.empty()) {
         fault = data->vertices.empty()
-                    ? "it holds no vertex ('v' in an OBJ file, 'element vertex' in a PLY file)"
+                    ? "it holds no vertex ('v' in an OBJ file, 'element vertex' in a PLY file, 'vertex' in "
+                      "an STL file)"
                     : "it holds no face, so there is nothing to draw";
         return std::nullopt;
     }

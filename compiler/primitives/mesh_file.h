@@ -29,18 +29,27 @@ inline constexpr std::size_t most_mesh_vertices = 1'000'000;
 inline constexpr double most_mesh_coordinate = 1e6;
 
 /// Reads a mesh: OBJ (vertices, normals, texture coordinates, faces of any number of corners, cut into fans)
-/// or PLY (ascii or binary; its header says which). Leaves out triangles without an area, and those that
-/// come again. Nothing, and what is at fault, for what is neither, is damaged, or has too much or nothing in
-/// it: a PLY's counts are held against the limits and the length of the file before anything is made room
+/// PLY or STL (ascii or binary; their bytes say which). Leaves out triangles without an area, and those that
+/// come again. Nothing, and what is at fault, for what is none of these, is damaged, or has too much or
+/// nothing in it: counts in a file are held against the limits and its length before anything is made room
 /// for.
 std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault);
 
 /// The fault of a coordinate, of a vertex or of a picture; empty if there is none.
 std::string fault_of_coordinate(double coordinate);
 
-/// The parts of read_mesh(). A fault begins with its line, or in a PLY's elements with its byte.
+/// Whether a file of this name promises a mesh, by its ending.
+bool is_mesh_name(std::string_view file_name);
+
+/// The parts of read_mesh(). A fault begins with its line, or in binary parts with its byte.
 std::optional<MeshData> read_obj(std::string_view text, std::string& fault);
 std::optional<MeshData> read_ply(std::string_view bytes, std::string& fault);
+std::optional<MeshData> read_stl(std::string_view bytes, std::string& fault);
+
+/// The length of a binary STL file with the number of facets that these bytes give; of one without facets if
+/// they give none. A file of just this length is such a file: it may begin with anything, even "solid".
+std::uint64_t binary_stl_size(std::string_view bytes);
+bool is_binary_stl(std::string_view bytes);
 
 /// The primitive of the mesh in the file of this name. Requires what read_mesh() gives.
 Primitive mesh_primitive(std::string_view path, MeshData data);

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstring>
 #include <string>
 
 #include <glm/geometric.hpp>
@@ -176,57 +175,6 @@ TEST(SphereSweep, RefusesWhatIsNoSweep) {
     EXPECT_THAT(fault_of(kind, {0, 0, 1e300, 1, 0, 1, 0, 1}), HasSubstr("not 1e+300"));
 }
 
-MeshData read(std::string_view bytes) {
-    std::string fault;
-    const std::optional<MeshData> data = read_mesh(bytes, fault);
-    EXPECT_TRUE(data) << fault;
-    return data.value_or(MeshData());
-}
-
-std::string fault_of_mesh(std::string_view bytes) {
-    std::string fault;
-    EXPECT_FALSE(read_mesh(bytes, fault));
-    return fault;
-}
-
-TEST(MeshFile, ReadsObj) {
-    const MeshData data = read("# a leaf\nv 0 0 0\nv 1 0 0\r\nv 1 1 0\nv 0 1 0 1.0\n"
-                               "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\no leaf\nusemtl green\n"
-                               "f 1/1/1 2/2/1 3/3/1 4/1/1\nf -4//1 -2//1 -3//1\n");
-    EXPECT_EQ(data.vertices.size(), 4u);
-    ASSERT_EQ(data.triangles.size(), 3u);
-    EXPECT_EQ(data.triangles[1], (std::array<std::uint32_t, 3>{0, 2, 3}));
-    ASSERT_EQ(data.uv.size(), 3u);
-    EXPECT_EQ(data.uv[0][2], (std::array<double, 2>{1, 1}));
-    EXPECT_TRUE(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3").uv.empty());
-}
-
-TEST(MeshFile, ReadsNormals) {
-    const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-    const MeshData smooth = read(square + "vn 0 0 2\nvn 0 3 4\nf 1//1 2//1 3//2\nf 1//1 3//1 4//1\n");
-    ASSERT_EQ(smooth.vertices.size(), 5u); // the third corner has two normals
-    ASSERT_EQ(smooth.normals.size(), 5u);
-    EXPECT_NEAR(glm::distance(smooth.normals[smooth.triangles[0][2]], Vec3(0, 0.6, 0.8)), 0, 1e-15);
-    EXPECT_NEAR(glm::distance(smooth.normals[smooth.triangles[1][1]], Vec3(0, 0, 1)), 0, 1e-15);
-    // A corner without a normal, or with one that has no direction, has that of its facet.
-    for (const char* const face : {"vn 1 0 0\nf 1//1 2//1 3\n", "vn 1 0 0\nvn 0 0 0\nf 1//1 2//1 3//2\n",
-                                   "vn 1 0 0\nvn nan 0 0\nf 1//1 2//1 3//2\n"}) {
-        const MeshData partly = read(square + face);
-        EXPECT_NEAR(glm::distance(partly.normals[partly.triangles[0][0]], Vec3(1, 0, 0)), 0, 1e-15);
-        EXPECT_NEAR(glm::distance(partly.normals[partly.triangles[0][2]], Vec3(0, 0, 1)), 0, 1e-15);
-    }
-    EXPECT_TRUE(read(square + "vn 0 0 1\nf 1 2 3\n").normals.empty());
-    EXPECT_THAT(fault_of_mesh(square + "vn 0 0\n"), HasSubstr("a normal has three numbers"));
-    EXPECT_THAT(fault_of_mesh(square + "f 1//1 2//1 3//1\n"), HasSubstr("names no vertex"));
-    const MeshData ply = read("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-                              "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
-                              "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                              "0 0 0 0 0 1\n1 0 0 0 3 4\n0 1 0 0 0 0\n3 0 1 2\n");
-    ASSERT_EQ(ply.normals.size(), 3u);
-    EXPECT_NEAR(glm::distance(ply.normals[1], Vec3(0, 0.6, 0.8)), 0, 1e-15);
-    EXPECT_NEAR(glm::distance(ply.normals[2], Vec3(0, 0, 1)), 0, 1e-15);
-}
-
 TEST(Mesh, NormalsRunEvenlyOverItsTriangles) {
     MeshData roof;
     roof.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -236,84 +184,6 @@ TEST(Mesh, NormalsRunEvenlyOverItsTriangles) {
     PrimitiveHit hit;
     ASSERT_TRUE(intersect(mesh, {{0.5, 0.25, 3}, {0, 0, -1}}, {}, hit));
     EXPECT_NEAR(glm::distance(hit.normal, glm::normalize(Vec3(0.3, 0, 0.9))), 0, 1e-12);
-}
-
-TEST(MeshFile, RefusesDamagedObj) {
-    EXPECT_THAT(fault_of_mesh("v 0 0\n"), HasSubstr("line 1: a vertex has three numbers"));
-    EXPECT_THAT(fault_of_mesh("v 0 0 0\nf 1 2 3\n"), HasSubstr("line 2: '2' names no vertex"));
-    EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 0\nf 1 2\n"), HasSubstr("three corners"));
-    EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n"),
-                HasSubstr("line 2: a coordinate is"));
-    EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 2e6\n"), HasSubstr("line 2: a coordinate is 2000000"));
-    EXPECT_THAT(fault_of_mesh("v 0 0 0\nvt 1 inf\n"), HasSubstr("line 2: texture: a coordinate is inf"));
-    EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), HasSubstr("no triangle"));
-    EXPECT_THAT(fault_of_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\n"), HasSubstr("it holds no face"));
-    for (const char* const strange : {"", "lsys tree { axiom F }\n", "{\"asset\": 1}"})
-        EXPECT_THAT(fault_of_mesh(strange), HasSubstr("it holds no vertex")) << strange;
-    EXPECT_THAT(fault_of_mesh(std::string("\x80\nv 1", 5) + std::string(2, '\0') + "\nf 1 1 1\n"),
-                HasSubstr("it is no OBJ or PLY mesh: byte 6 is zero"));
-}
-
-constexpr const char* ply_header = "ply\nformat {} 1.0\ncomment none\nelement vertex 3\nproperty float x\n"
-                                   "property float y\nproperty float z\nproperty float s\n"
-                                   "property float t\nelement face 1\n"
-                                   "property list uchar int vertex_indices\nend_header\n";
-
-std::string header(const std::string& format) {
-    std::string text = ply_header;
-    return text.replace(text.find("{}"), 2, format);
-}
-
-TEST(MeshFile, ReadsPlyAsTextAndBinary) {
-    const MeshData text = read(header("ascii") + "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n");
-    for (const bool swapped : {false, true}) {
-        std::string bytes = header(swapped ? "binary_big_endian" : "binary_little_endian");
-        const auto add = [&](auto number) {
-            char raw[sizeof(number)];
-            std::memcpy(raw, &number, sizeof(number));
-            if (swapped) std::reverse(std::begin(raw), std::end(raw));
-            bytes.append(raw, sizeof(number));
-        };
-        for (const float number : {0.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f})
-            add(number);
-        add(std::uint8_t{3});
-        for (const std::int32_t corner : {0, 1, 2})
-            add(corner);
-        const MeshData binary = read(bytes);
-        EXPECT_EQ(binary.vertices, text.vertices);
-        EXPECT_EQ(binary.triangles, text.triangles);
-        EXPECT_EQ(binary.uv, text.uv);
-        const std::string too_early =
-            "byte " + std::to_string(bytes.size() - 3) + ": the file ends too early";
-        EXPECT_EQ(fault_of_mesh(bytes.substr(0, bytes.size() - 2)), too_early);
-    }
-    EXPECT_EQ(text.uv[0][1], (std::array<double, 2>{1, 0}));
-}
-
-TEST(MeshFile, RefusesDamagedPly) {
-    std::string endless = header("ascii");
-    endless.replace(endless.find("vertex 3"), 8, "vertex 99999999999");
-    EXPECT_THAT(fault_of_mesh(endless + "0 0 0"), HasSubstr("shorter than its header says"));
-    EXPECT_THAT(fault_of_mesh(header("ascii") + "0 0 0 0 0 1 0 0 1 0 0 1 0 0 1 3 0 1 7"),
-                HasSubstr("names vertex 7"));
-    EXPECT_THAT(fault_of_mesh(header("ascii") + "0 0 0 0 0 1 0 0 1 0 0 1 0 0 1 900000 0 1 2"),
-                HasSubstr("longer than the file"));
-    const std::string start = header("ascii");
-    EXPECT_EQ(fault_of_mesh(start + "0 0 nan 0 0 1 0 0 1 0 0 1 0 0 1 3 0 1 2"),
-              "byte " + std::to_string(start.size() + 8) + ": a coordinate is nan, and 1000000 is the most");
-    EXPECT_THAT(fault_of_mesh(header("cuneiform")), HasSubstr("line 2: 'cuneiform' is no format"));
-    EXPECT_THAT(fault_of_mesh("ply\nelement vertex x\n"), HasSubstr("no number of elements"));
-    EXPECT_THAT(fault_of_mesh("ply\n"), HasSubstr("does not end"));
-}
-
-TEST(MeshFile, KeepsOneOfTrianglesThatCoincide) {
-    // The corners turned about, other numbers of the same places, -0 for 0.
-    const MeshData data = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 0 0\nv 1 0 0\n"
-                               "f 1 2 3\nf 2 3 1\nf 4 5 3\nf 1 2 3\n");
-    EXPECT_EQ(data.triangles.size(), 1u);
-    EXPECT_EQ(data.vertices.size(), 3u);
-    // The back of a triangle is another triangle: other programs draw one side only.
-    EXPECT_EQ(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n").triangles.size(), 2u);
 }
 
 constexpr double turn = 2 * 3.14159265358979;

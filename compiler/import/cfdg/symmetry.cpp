@@ -13,6 +13,7 @@ namespace {
 
 constexpr double close_by = 1e-7;
 constexpr double highest_order = 1000;
+constexpr const char* no_number_or_centre = "takes no number, or the two of a centre";
 
 bool alike(const Affine& a, const Affine& b) {
     return largest_entry(a.linear - b.linear) < close_by &&
@@ -35,9 +36,10 @@ Affine mirror(double degrees) {
 /// The angles of the four mirror axes that Context Free numbers: x, y, the diagonal and the other diagonal.
 constexpr double axes[] = {0, 90, 45, -45};
 
-std::vector<Affine> dihedral(int order, Vec3 centre, bool mirrors, double axis_deg) {
+/// An order of 2.5 makes 2 copies, 144 degrees apart, as in Context Free.
+std::vector<Affine> dihedral(double order, Vec3 centre, bool mirrors, double axis_deg) {
     std::vector<Affine> maps;
-    for (int i = 0; i < order; ++i) {
+    for (int i = 0; i < static_cast<int>(order); ++i) {
         const Affine turned = turn(360.0 * i / order);
         maps.push_back(about(centre, turned));
         if (mirrors) maps.push_back(about(centre, mirror(axis_deg) * turned));
@@ -114,11 +116,13 @@ std::optional<std::vector<Affine>> symmetry(std::string_view name, const std::ve
     };
     if (name == "CF::Cyclic" || name == "CF::Dihedral") {
         const bool mirrors = name == "CF::Dihedral";
-        if (n.empty() || !(n[0] >= 1 && n[0] <= highest_order) || n.size() > 4 || (!mirrors && n.size() == 2))
-            return fail("takes an order of 1 to 1000, and a centre");
+        if (n.empty() || !(n[0] >= 1 && n[0] <= highest_order) || n.size() > 4 ||
+            (!mirrors && n.size() % 2 == 0))
+            return fail(fmt::format("takes an order of 1 to 1000{}, and may take the two numbers of a centre",
+                                    mirrors ? ", may take the angle of a mirror" : ""));
         const double axis = n.size() == 2 || n.size() == 4 ? n[1] : 0;
         const Vec3 centre = n.size() >= 3 ? Vec3(n[n.size() - 2], n[n.size() - 1], 0) : Vec3(0.0);
-        return dihedral(static_cast<int>(n[0]), centre, mirrors, axis);
+        return dihedral(n[0], centre, mirrors, axis);
     }
     const Tile tile = tile_of(lattice);
     const bool right = tile.rectangular || tile.diagonal;
@@ -130,14 +134,16 @@ std::optional<std::vector<Affine>> symmetry(std::string_view name, const std::ve
     if (const auto row = frieze.find(name); row != frieze.end()) {
         if (!lattice.is_frieze() && !(row->second == 5 && lattice.is_tiled()))
             return fail("needs a 'CF::Tile' of one direction");
+        const bool by_offset = row->second <= 2;
+        if (!n.empty() && n.size() != (by_offset ? 1u : 2u))
+            return fail(by_offset ? "takes no number, or the offset of its axis" : no_number_or_centre);
         const bool level = lattice.across != Vec3(0.0);
         const Vec3 half = (lattice.across + lattice.up) * 0.5;
         const double along = level ? 0 : 90;
         const double at = n.empty() ? 0 : n[0];
         const Vec3 offset = level ? Vec3(0, at, 0) : Vec3(at, 0, 0),
                    other = level ? Vec3(at, 0, 0) : Vec3(0, at, 0);
-        const Affine glide =
-            Affine::translate(half) * about(n.size() == 2 ? centre(0) : offset, mirror(along));
+        const Affine glide = Affine::translate(half) * about(by_offset ? offset : centre(0), mirror(along));
         switch (row->second) {
         case 0:
             return closed({glide}, lattice);
@@ -145,8 +151,11 @@ std::optional<std::vector<Affine>> symmetry(std::string_view name, const std::ve
             return closed({about(offset, mirror(along))}, lattice);
         case 2:
             return closed({about(other, mirror(along + 90))}, lattice);
-        case 3:
-            return closed({about(n.size() == 2 ? centre(0) : other, mirror(along + 90)), glide}, lattice);
+        case 3: { // the centre is that of half turns; mirrors stand a quarter of the tile beside it
+            std::vector<Affine> maps = dihedral(2, centre(0), false, 0);
+            maps.push_back(glide);
+            return closed(maps, lattice);
+        }
         case 4:
             return closed(dihedral(2, centre(0), true, 0), lattice);
         default:
@@ -161,16 +170,23 @@ std::optional<std::vector<Affine>> symmetry(std::string_view name, const std::ve
     if (row == wallpaper.end()) return fail("is no symmetry");
     const int group = row->second;
     const bool by_axis = group <= 2 || group == 4;
-    const bool diagonal_axes = tile.diagonal || (group == 2 && tile.square);
-    if (by_axis && (n.empty() || n[0] != std::floor(n[0]) || n[0] < (diagonal_axes ? 2 : 0) ||
-                    n[0] > (diagonal_axes ? 3 : 1)))
-        return fail(diagonal_axes ? "takes an axis of 2 or 3" : "takes an axis of 0 or 1");
+    if (!lattice.is_tiled()) return fail("needs a 'CF::Tile' of two directions");
     const bool fits = group == 2 || group == 6 ? tile.rhombic || tile.square
                       : group <= 5             ? right
                       : group <= 9             ? tile.square || tile.diagonal
                                                : tile.hexagonal;
     if (!fits) return fail("does not fit this 'CF::Tile'");
-    const double axis = by_axis ? axes[static_cast<std::size_t>(n[0])] : 0;
+    const double first_axis = (group == 2 ? tile.square : tile.diagonal) ? 2 : 0;
+    // Context Free drops the fraction of an axis: 0.2 is the axis 0.
+    const double number = by_axis && !n.empty() ? std::trunc(n[0]) : first_axis;
+    if (by_axis && (n.empty() || !(number >= first_axis && number <= first_axis + 1)))
+        return fail(
+            fmt::format("takes an axis of {} or {} with this 'CF::Tile'", first_axis, first_axis + 1));
+    if (by_axis && n.size() > 1 && n.size() != (group == 4 ? 3u : 2u))
+        return fail(group == 4 ? "takes an axis, and may take the two numbers of a centre"
+                               : "takes an axis, and may take an offset of it");
+    if (!by_axis && !n.empty() && n.size() != 2) return fail(no_number_or_centre);
+    const double axis = by_axis ? axes[static_cast<std::size_t>(number)] : 0;
     const auto direction = [](double degrees) { return turn(degrees).linear[0]; };
     const auto half_step = [&](double degrees) { // half of the shortest way of the lattice along an axis
         const double length = tile.diagonal             ? tile.side

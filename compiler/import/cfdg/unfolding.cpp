@@ -97,8 +97,9 @@ Translation Unfolding::write() {
     if (grammar_.numbers.contains(shape->name)) {
         first = unfold_from(*shape, target, change->map);
         if (first) master = name_of(*first);
+    } else if (master.empty()) {
+        fail(start.span, fmt::format("'{}' is no shape to start from", shape->name));
     }
-    if (master.empty()) fail(start.span, fmt::format("'{}' is no shape to start from", shape->name));
     if (full_ && !drawn_)
         fail(start.span,
              fmt::format("the grammar makes more than {} different shapes before it draws one", most_nodes),

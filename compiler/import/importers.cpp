@@ -18,6 +18,7 @@
 #include "compiler/import/houdini/importer.h"
 #include "compiler/import/lparser/importer.h"
 #include "compiler/import/lpy/importer.h"
+#include "compiler/import/unread.h"
 #include "compiler/support/path_text.h"
 #include "compiler/support/small_letters.h"
 #include "compiler/support/text_encoding.h"
@@ -61,6 +62,19 @@ void refuse(const ForeignFile& file, const std::vector<const Importer*>& rows) {
     file.diagnostics
         .error(file.span(first, end), fmt::format("'{}' is no {}: these words begin none", name, formats))
         .with_hint(signs);
+}
+
+/// Whether the text is of a kind that no importer reads, after the error that says so.
+bool is_unread(const ForeignFile& file, bool known_to_none) {
+    const std::string_view text = file.text();
+    const std::optional<UnreadKind> kind = unread_kind(text, known_to_none);
+    if (!kind) return false;
+    const std::size_t end = std::min({text.find('\n', kind->begin), kind->begin + 80, text.size()});
+    file.diagnostics
+        .error(file.span(kind->begin, end), fmt::format("'{}' is {}, and graftal does not read that",
+                                                        file.sources.name(file.file), kind->name))
+        .with_hint(std::string(kind->instead));
+    return true;
 }
 
 std::vector<std::string> names_of(const std::vector<ForeignModel>& models) {
@@ -132,6 +146,7 @@ const Importer* importer_of(const ForeignFile& file) {
     for (const Importer& importer : importers())
         (has_ending(importer, ending) ? promised : others).push_back(&importer);
     const bool is_text = !is_binary(file.text());
+    if (is_text && is_unread(file, false)) return nullptr;
     const auto knows = [&](const Importer* row) { return is_text && row->recognises(file.text()); };
     if (const auto found = std::ranges::find_if(promised, knows); found != promised.end()) return *found;
     if (const auto found = std::ranges::find_if(others, knows); found != others.end()) {
@@ -141,6 +156,7 @@ const Importer* importer_of(const ForeignFile& file) {
                                                       promised.front()->format));
         return *found;
     }
+    if (is_text && is_unread(file, true)) return nullptr;
     if (promised.size() == 1 && is_text) return promised.front(); // its reader says what does not fit
     refuse(file, promised.empty() ? others : promised);
     return nullptr;

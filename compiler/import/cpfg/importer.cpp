@@ -21,15 +21,12 @@ std::vector<ForeignModel> cpfg_models(const ForeignFile& file) {
     return {{name, file.span(0, std::min<std::size_t>(file.text().find('\n'), file.text().size()))}};
 }
 
-/// A line begins with "Lsystem:", and none includes lpfg's header, which is C++.
+/// A line begins with "Lsystem:".
 bool is_cpfg(std::string_view text) {
-    bool begins = false;
-    for (const TextLine& line : lines_of(text, 0, text.size())) {
+    return std::ranges::any_of(lines_of(text, 0, text.size()), [](const TextLine& line) {
         const std::string_view words = trimmed(line.text);
-        begins = begins || words.starts_with("Lsystem:") || words.starts_with("lsystem:");
-        if (words.starts_with("#include") && words.find("lpfgall") != std::string_view::npos) return false;
-    }
-    return begins;
+        return words.starts_with("Lsystem:") || words.starts_with("lsystem:");
+    });
 }
 
 std::optional<Translation> translate_cpfg(const ForeignFile& file, const ForeignModel& model) {
@@ -51,8 +48,7 @@ constexpr std::string_view cpfg_endings[] = {"l"};
 } // namespace
 
 Importer cpfg_importer() {
-    return {"cpfg L-system", cpfg_endings,  is_cpfg, "a line 'Lsystem: 1', and no header of lpfg",
-            cpfg_models,     translate_cpfg};
+    return {"cpfg L-system", cpfg_endings, is_cpfg, "a line 'Lsystem: 1'", cpfg_models, translate_cpfg};
 }
 
 } // namespace graftal

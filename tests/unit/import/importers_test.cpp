@@ -1,5 +1,6 @@
 #include "compiler/import/importers.h"
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -18,6 +19,7 @@ namespace graftal::testing {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::string two_models = "Koch { ; a curve\n Angle 6\n Axiom F\n F=F+F--F+F\n}\n"
                                "comment { not a model }\n"
@@ -41,6 +43,44 @@ TEST(Importers, AModelIsFoundByItsName) {
     EXPECT_THAT(Imported("a.l:Koch", "no model here").said(),
                 HasSubstr("is no cpfg L-system or Fractint L-system"));
     EXPECT_THAT(Imported("a.l", "").said(), HasSubstr("is no"));
+}
+
+TEST(Importers, NameAForeignLanguageThatTheyDoNotRead) {
+    const std::string lpfg = "#include <cmath>\n#include <lpfgall.h>\nmodule A(float);\nAxiom: A(1);\n"
+                             "derivation length: 10;\nvoid f() { if (1) { } }\nint angle { 3 };\n"
+                             "production:\nA(x) : { produce F(x) A(x); }\n";
+    for (const char* const name : {"a.l", "a.lpy", "a.cfdg", "a.txt", "a.lsystem"}) {
+        const Imported program(name, lpfg);
+        EXPECT_FALSE(program.graph);
+        EXPECT_THAT(program.said(), HasSubstr(std::string(name) + ":2:1: error: '" + name +
+                                              "' is an L+C program for lpfg, which is C++, and graftal does "
+                                              "not read that"));
+        EXPECT_THAT(program.said(), HasSubstr("graftal reads L-systems of cpfg"));
+        EXPECT_EQ(program.said().find("error:"), program.said().rfind("error:")) << program.said();
+    }
+    const std::vector<std::array<std::string, 3>> programs = {
+        {"a.l", "module A(float); // age\nA(x) : { produce F(x) A(x); }\n",
+         ":1:1: error: 'a.l' is an L+C program"},
+        {"a.l", "#include \"modules.h\"\nA(x) : {\n  produce F(x) A(x);\n}\n",
+         ":1:1: error: 'a.l' is an L+C program"},
+        {"a.txt", "\n module A(float x) extends Sphere(x);\npublic void run() [ A(x) ==> F(x) A(x); ]\n",
+         ":2:2: error: 'a.txt' is an XL program for GroIMP"},
+        {"a.cfdg", "<!DOCTYPE html>\n<html></html>\n", ":1:1: error: 'a.cfdg' is XML or HTML"},
+        {"a.es", "{\n \"rules\": 1 }", ":1:1: error: 'a.es' is JSON"},
+        {"a.txt", "\"\"\"A tree\"\"\"\nimport turtle\n", ":2:1: error: 'a.txt' is a Python program"},
+        {"a.ls", "#include <stdio.h>\nint main() {}\n", ":1:1: error: 'a.ls' is a C or C++ program"},
+        {"a.txt", "#include \"colors.inc\"\n", ":1:1: error: 'a.txt' is a scene of POV-Ray"}};
+    for (const auto& [name, text, error] : programs) {
+        const Imported program(name, text);
+        EXPECT_FALSE(program.graph) << text;
+        EXPECT_THAT(program.said(), HasSubstr(error));
+    }
+    // L-Py has modules and 'produce' too, and cpfg runs the preprocessor of C.
+    for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+             {"a.lpy", "module A\nAxiom: F\nderivation length: 1\nproduction:\nF:\n  produce F-F\n"},
+             {"a.l",
+              "#include <math.h>\nLsystem: 1\nderivation length: 2\nAxiom: F\nF --> F-F\nendlsystem\n"}})
+        EXPECT_THAT(Imported(name, text).said(), Not(HasSubstr("does not read that"))) << text;
 }
 
 TEST(Importers, AnErrorInATranslationNamesTheForeignLine) {

@@ -76,6 +76,7 @@ struct Importer {
     std::vector<ForeignModel> (*models)(const ForeignFile& file);
     /// Nothing after an error.
     std::optional<Translation> (*translate)(const ForeignFile& file, const ForeignModel& model);
+    std::string_view host = {}; ///< the kind of text (UnreadKind) that the format is a part of: "XML or HTML"
 };
 
 } // namespace graftal

@@ -64,11 +64,12 @@ void refuse(const ForeignFile& file, const std::vector<const Importer*>& rows) {
         .with_hint(signs);
 }
 
-/// Whether the text is of a kind that no importer reads, after the error that says so.
-bool is_unread(const ForeignFile& file, bool known_to_none) {
+/// Whether the text is of a kind that no importer reads, after the error that says so. The reader of a format
+/// that is a part of that kind knows better what does not fit. `promised`: by the file's name.
+bool is_unread(const ForeignFile& file, bool known_to_none, const std::vector<const Importer*>& promised) {
     const std::string_view text = file.text();
     const std::optional<UnreadKind> kind = unread_kind(text, known_to_none);
-    if (!kind) return false;
+    if (!kind || (promised.size() == 1 && promised.front()->host == kind->name)) return false;
     const std::size_t end = std::min({text.find('\n', kind->begin), kind->begin + 80, text.size()});
     file.diagnostics
         .error(file.span(kind->begin, end), fmt::format("'{}' is {}, and graftal does not read that",
@@ -146,7 +147,7 @@ const Importer* importer_of(const ForeignFile& file) {
     for (const Importer& importer : importers())
         (has_ending(importer, ending) ? promised : others).push_back(&importer);
     const bool is_text = !is_binary(file.text());
-    if (is_text && is_unread(file, false)) return nullptr;
+    if (is_text && is_unread(file, false, promised)) return nullptr;
     const auto knows = [&](const Importer* row) { return is_text && row->recognises(file.text()); };
     if (const auto found = std::ranges::find_if(promised, knows); found != promised.end()) return *found;
     if (const auto found = std::ranges::find_if(others, knows); found != others.end()) {
@@ -156,7 +157,7 @@ const Importer* importer_of(const ForeignFile& file) {
                                                       promised.front()->format));
         return *found;
     }
-    if (is_text && is_unread(file, true)) return nullptr;
+    if (is_text && is_unread(file, true, promised)) return nullptr;
     if (promised.size() == 1 && is_text) return promised.front(); // its reader says what does not fit
     refuse(file, promised.empty() ? others : promised);
     return nullptr;

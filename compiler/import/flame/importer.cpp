@@ -406,7 +406,8 @@ Importer flame_importer() {
             .recognises = flame::recognises,
             .sign = "an element '<flame ...>'",
             .models = flame::models,
-            .translate = flame::translate};
+            .translate = flame::translate,
+            .host = "XML or HTML"};
 }
 
 } // namespace graftal

@@ -53,7 +53,8 @@ constexpr std::string_view lpy_endings[] = {"lpy"};
 } // namespace
 
 Importer lpy_importer() {
-    return {"L-Py", lpy_endings, is_lpy, "lines 'Axiom: ...' and 'production:'", lpy_models, translate_lpy};
+    return {"L-Py",        lpy_endings,       is_lpy, "lines 'Axiom: ...' and 'production:'", lpy_models,
+            translate_lpy, "a Python program"};
 }
 
 } // namespace graftal

@@ -75,8 +75,10 @@ TEST(Importers, NameAForeignLanguageThatTheyDoNotRead) {
         EXPECT_FALSE(program.graph) << text;
         EXPECT_THAT(program.said(), HasSubstr(error));
     }
-    // L-Py has modules and 'produce' too, and cpfg runs the preprocessor of C.
+    // L-Py has modules and 'produce' too, and is Python; cpfg runs the preprocessor of C; flames are XML.
     for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+             {"a.lpy", "import math\nmodule A\n"},
+             {"a.flame", "<flames></flames>"},
              {"a.lpy", "module A\nAxiom: F\nderivation length: 1\nproduction:\nF:\n  produce F-F\n"},
              {"a.l",
               "#include <math.h>\nLsystem: 1\nderivation length: 2\nAxiom: F\nF --> F-F\nendlsystem\n"}})

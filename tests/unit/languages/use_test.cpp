@@ -320,6 +320,12 @@ TEST(Language, follows_the_name_of_the_file) {
     Diagnostics unknown;
     EXPECT_FALSE(lower_text("tree.doc", "", {}, sources, unknown).graph);
     EXPECT_THAT(unknown.render(sources), HasSubstr("hint: the names of models end in .lsys, .rifs or .inst"));
+    for (const std::string name : {"a.STL", "a.obj", "a.ply"}) {
+        Diagnostics mesh;
+        EXPECT_FALSE(lower_text("parts/" + name, "", {}, sources, mesh).graph);
+        EXPECT_THAT(mesh.render(sources),
+                    HasSubstr("write 'object thing { mesh \"" + name + "\" }' into an"));
+    }
 }
 
 TEST(Language, of_standard_input_follows_its_first_word) {

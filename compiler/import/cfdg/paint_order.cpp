@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace graftal::cfdg {
@@ -19,6 +21,10 @@ constexpr double flatness = 1e-3;
 constexpr double least_gap_of_veils = 1e-5;
 /// Lines of an object, and of all levels, that heights tell apart.
 constexpr double most_width = 1e7, most_lines = 1e8;
+/// Sizes smaller by more than this logarithm are too small to be seen, and so many sizes of objects are told
+/// apart.
+constexpr double least_log_seen = 10;
+constexpr std::size_t most_sizes = 300'000;
 /// The factor by which depths lie farther apart than all other heights.
 constexpr double depth_factor = 1000;
 
@@ -46,6 +52,32 @@ std::vector<std::size_t> from_the_leaves(const std::vector<std::vector<PaintedLi
         path.emplace_back(next, 0);
     }
     return order;
+}
+
+/// The least logarithm by which sizes of seen shapes differ, at least `same_size`: two thirds of a size apart
+/// leave room for a million heights of each size, millionths for one. O(n log n) in sizes of objects.
+double least_step_of_sizes(const std::vector<std::vector<PaintedLine>>& objects, std::size_t root) {
+    std::set<std::pair<std::size_t, std::int64_t>> seen;
+    std::vector<std::pair<std::size_t, double>> open = {{root, 0}};
+    std::vector<double> sizes = {0};
+    while (!open.empty()) {
+        const auto [object, size] = open.back();
+        open.pop_back();
+        for (const PaintedLine& line : objects[object]) {
+            if (line.node == PaintedLine::none) continue;
+            const double next = size + (line.is_call ? line.log_shrunk : 0);
+            if (!(std::abs(next) <= least_log_seen)) continue;
+            if (!seen.emplace(line.node, std::llround(next / same_size)).second) continue;
+            if (seen.size() > most_sizes) return same_size;
+            sizes.push_back(next);
+            open.emplace_back(line.node, next);
+        }
+    }
+    std::ranges::sort(sizes);
+    double least = least_log_seen;
+    for (std::size_t i = 1; i < sizes.size(); ++i)
+        if (const double step = sizes[i] - sizes[i - 1]; step > same_size) least = std::min(least, step);
+    return std::max(least, same_size);
 }
 
 } // namespace
@@ -82,8 +114,10 @@ PaintOrder::PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std
     const double levels = spreads[root].levels + 1;
     const double level = std::min(spreads[root].width, most_lines / levels);
     const double lines = level * levels;
-    const double gap = translucent ? least_gap_of_veils * extent : flatness * extent * same_size / lines;
-    const double size = translucent ? gap * lines / same_size_of_veils : flatness * extent;
+    // Heights of endless paths add up at all sizes, so that they must stay small against the least size.
+    const double step = endless ? same_size : 1 - std::exp(-least_step_of_sizes(objects, root));
+    const double gap = translucent ? least_gap_of_veils * extent : flatness * extent * step / lines;
+    const double size = translucent ? gap * lines / std::max(step, same_size_of_veils) : flatness * extent;
     // The height and depth that each object reaches, without depths first, and then with them.
     std::vector<std::pair<double, double>> reach(objects.size());
     const auto find_reach = [&](double depth) {

@@ -49,7 +49,11 @@ SceneWriter::SceneWriter(const ForeignFile& file, const Grammar& grammar)
         names_.insert(taken);
     const auto fades = [](const Modification& modification) {
         return std::ranges::any_of(modification.adjustments, [](const Adjustment& adjustment) {
-            return adjustment.word == "a" || (adjustment.word == "h" && adjustment.values.size() == 4);
+            if (adjustment.word != "a" && !(adjustment.word == "h" && adjustment.values.size() == 4))
+                return false;
+            const Expr& alpha = adjustment.values.back(); // what is opaque stays so with none less
+            return adjustment.sets_target || adjustment.to_target || alpha.kind != Expr::Kind::number ||
+                   alpha.number < 0;
         });
     };
     const auto anywhere = [&](const auto& test) {

@@ -23,6 +23,8 @@ constexpr int most_groups = 8;
 constexpr std::uint32_t most_looked_at = 64;
 /// Parts of all unrollings: some MiB, in some milliseconds.
 constexpr std::size_t most_in_all = 8192;
+/// Parts made in all, with those that are taken back, and smaller parts looked at to find their boxes.
+constexpr std::size_t most_made = 16 * most_in_all, most_looks = 1 << 15;
 
 class Unroller {
   public:
@@ -197,8 +199,10 @@ class Unroller {
             any = any || expanded;
             count += expanded ? model_.nodes[model_.edges[number].child].edge_count : 1;
         }
-        if (!any || count > most_parts || model_.edges.size() - leaves_in_all_ + count > most_edges_)
+        if (!any || count > most_parts || model_.edges.size() - leaves_in_all_ + count > most_edges_ ||
+            made_ + count > most_made)
             return false;
+        made_ += count;
         Parts deeper{{}, parts.unrolling};
         for (const std::uint32_t number : parts.edges) {
             if (!is_expanded(number)) {
@@ -277,20 +281,22 @@ class Unroller {
     }
 
     Box box_of(const TraceEdge& first, const TraceEdge& second, const Affine& parent_from_middle,
-               const Affine& parent_from_child) const {
+               const Affine& parent_from_child) {
         if (second.box.empty()) return {};
         const TraceNode& child = model_.nodes[second.child];
         if (is_solid(child)) return box_about_image(child.primitive, parent_from_child);
         const Box box = both(transformed(parent_from_middle, second.box), first.box);
-        if (!is_union(child) || keeps_axes(parent_from_child.linear)) return box;
+        if (!is_union(child) || keeps_axes(parent_from_child.linear) || looks_ > most_looks) return box;
         return both(box, box_of_parts(parent_from_child, child, most_looked_at));
     }
 
     /// Smaller than the box of a turned box, by the boxes of `most` smaller parts.
-    Box box_of_parts(const Affine& place, const TraceNode& node, std::uint32_t most) const {
+    Box box_of_parts(const Affine& place, const TraceNode& node, std::uint32_t most) {
         const std::uint32_t count = node.edge_count + node.stop_edge_count;
+        looks_ += count;
         Box box;
         for (std::uint32_t i = 0; i < count; ++i) {
+            if (cancel_.raised()) throw Cancelled();
             const TraceEdge& edge = model_.edges[node.first_edge + i];
             if (edge.box.empty()) continue;
             const TraceNode& child = model_.nodes[edge.child];
@@ -325,7 +331,7 @@ class Unroller {
     TraceModel& model_;
     const CancelFlag& cancel_;
     const std::size_t most_edges_; ///< without leaves
-    std::size_t leaves_in_all_ = 0;
+    std::size_t leaves_in_all_ = 0, made_ = 0, looks_ = 0;
 };
 
 } // namespace

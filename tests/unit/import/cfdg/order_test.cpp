@@ -98,6 +98,36 @@ TEST(ContextFreeOrder, LongRecursionKeepsItsOrder) {
     EXPECT_GT(endless.size(), 190u);
 }
 
+// Found by discs that vanished in squares of the same rule: a million shapes of one size left a distance of
+// 1e-16 between the lines of a rule, which no ray can tell.
+TEST(ContextFreeOrder, LinesOfARuleLieApartHoweverManyShapesThereAre) {
+    for (const char* const shrinks : {"0.7", "0.75"}) {
+        const std::string call = std::string(" r 45 s ") + shrinks + " b 0.2] ";
+        const ImportedShapes model("a.cfdg",
+                                   "startshape A\nshape A { SQUARE [s 0.3] TRIANGLE [s 0.2 b 1] A [x 1" +
+                                       call + "A [x -1" + call + "}");
+        ASSERT_TRUE(model.graph) << model.said();
+        const auto leaves = model.leaves({});
+        ASSERT_GT(leaves.size(), 1000u);
+        for (std::size_t i = 0; i + 1 < leaves.size(); i += 2)
+            EXPECT_GT(std::abs(leaves[i + 1].world_from_object.translation.z -
+                               leaves[i].world_from_object.translation.z),
+                      1e-13)
+                << shrinks;
+    }
+}
+
+// Found by 'CIRCLE [a 0]', which made a grammar cost as much as one of veils.
+TEST(ContextFreeOrder, NoLessAlphaIsOpaque) {
+    const auto drawn = [](const std::string& adjustment) {
+        return ImportedShapes("a.cfdg", "startshape A\nshape A { CIRCLE [" + adjustment + "] }").translation;
+    };
+    for (const char* const opaque : {"a 0", "a 0.5", "alpha 1", "b 0.5"})
+        EXPECT_THAT(drawn(opaque), HasSubstr("cylinder")) << opaque;
+    for (const char* const veil : {"a -0.5", "a (0 - 0.5)", "|a 0.5 a 0.5|"})
+        EXPECT_THAT(drawn(veil), HasSubstr("polygon")) << veil;
+}
+
 // Found by 'z 1' in a shape of half the size, which lay below a 'z 0.7' beside it.
 TEST(ContextFreeOrder, DepthComesFirstAndHasASizeOfItsOwn) {
     const auto front = [](const std::string& rest) { return painted("shape A { " + rest).back(); };

@@ -19,16 +19,13 @@ namespace graftal::cfdg {
 
 namespace {
 
-constexpr const char* fewer_shapes = "ask for less: fewer turns of its loops, such as a coarser grid";
 /// Most variants of a random shape: as many as .inst makes of a random object.
 constexpr std::size_t most_variants = 64;
 constexpr std::uint64_t most_trials = 20; ///< where chance draws nothing
-/// Turns of a loop that are not written one by one.
-constexpr double least_even_turns = 32, most_even_turns = 1e9;
-constexpr int most_generations = 2000;
-constexpr std::size_t most_nodes = 60'000;
-constexpr std::size_t most_unfolded_lines = 600'000;
-constexpr std::size_t most_loop_turns = 2'000'000;
+/// Generations of recursion without end that have their turn by size, as all shapes; others are drawn where
+/// these leave room.
+constexpr int early_generations = 2000;
+constexpr double farthest = 1e50, farthest_late = 1e9; ///< largest places and sizes, and those of others
 /// Most colour steps of all shapes together: each turn of a loop may add one to those before it.
 constexpr std::size_t most_colour_steps = 4'000'000;
 /// The share of the picture below which Context Free draws no shape: 0.3 pixels of 500.
@@ -52,13 +49,13 @@ std::string stretch_text(const Affine& map) {
                        entry(glm::dot(up, up)));
 }
 
-/// Whether nothing is seen of a part: its thickness of 1 is so much larger than it that the language would
-/// call its map flat.
-bool is_unseen(const Affine& map) {
-    constexpr double least_width = 1e-11;
-    const glm::dvec2 across(map.linear[0]), up(map.linear[1]);
-    const double area = std::abs(across.x * up.y - across.y * up.x);
-    return !(area > least_width * std::hypot(glm::length(across), glm::length(up)));
+bool is_within(double bound, const Affine& map) {
+    return is_finite(map) && largest_entry(map.linear) <= bound && largest_entry(map.translation) <= bound;
+}
+
+/// The turn of a shape among those that wait, before its size: 0, or less for one of a late generation.
+int turn_of(int generation) {
+    return generation > early_generations ? -generation : 0;
 }
 
 } // namespace
@@ -111,15 +108,25 @@ Translation Unfolding::write() {
     if (file_.diagnostics.has_errors()) return std::move(out_);
     write_scene();
     if (first) {
-        if (full_)
-            file_.diagnostics.warning(
-                start.span,
-                fmt::format("the grammar makes more than {} shapes; the smallest are left out", lines_));
+        if (full_) warn_of_rest(start.span);
         write_nodes(*first);
     }
     if (inks) write_start(master + moves_text(change->map), *inks);
     write_end();
     return std::move(out_);
+}
+
+/// Says which shapes the picture lacks.
+void Unfolding::warn_of_rest(Span start) {
+    const Node& last = *std::ranges::max_element(nodes_, {}, &Node::generation);
+    if (last.generation > early_generations)
+        file_.diagnostics.warning(grammar_.shapes[last.shape].span,
+                                  fmt::format("'{}' calls itself without becoming smaller, as far as can be "
+                                              "told; the picture has its first {} generations",
+                                              last.value.name, last.generation));
+    else
+        file_.diagnostics.warning(
+            start, fmt::format("the grammar makes more than {} shapes; the smallest are left out", lines_));
 }
 
 /// Where chance draws nothing at all, it is asked again.
@@ -166,13 +173,13 @@ std::optional<std::size_t> Unfolding::unfold_once(const ShapeValue& shape, const
     full_ = false;
     const std::optional<std::size_t> first = node_for(shape, target, std::nullopt, world);
     while (!open_.empty() && file_.diagnostics.error_count() == 0) {
-        const auto [size, id] = open_.top();
+        const auto [turn, size, id] = open_.top();
         open_.pop();
         if (nodes_[id].done) continue;
-        // All others are smaller. A canvas of a size is as many pixels wide, if that is more than usual.
+        // A canvas of a size is as many pixels wide, if that is more than usual.
         if (!endless_ &&
             size < std::min(too_small * extent_, grammar_.size ? smallest_pixels : too_small * extent_))
-            break;
+            continue;
         if (lines_ > most_unfolded_lines || turns_ > most_loop_turns) {
             full_ = true;
             break;
@@ -188,23 +195,14 @@ std::optional<std::size_t> Unfolding::node_for(const ShapeValue& value, const Ta
                                                std::optional<std::size_t> from, const Affine& world) {
     const std::size_t shape = grammar_.numbers.at(value.name);
     // Sizes end all other recursion.
-    std::optional<int> left = recursion_.shrinks(shape) ? std::nullopt : std::optional(most_generations);
-    if (left && from && recursion_.together(nodes_[*from].shape, shape))
-        left = nodes_[*from].left.value_or(*left) - 1;
-    if (left && *left <= 0) {
-        if (!std::exchange(noted_, true))
-            file_.diagnostics.note(
-                grammar_.shapes[shape].span,
-                fmt::format("'{}' calls itself without becoming smaller, as far as can be told; "
-                            "it is drawn to {} generations",
-                            value.name, most_generations));
-        return std::nullopt;
-    }
+    const bool counts = !recursion_.shrinks(shape);
+    const int generation =
+        counts && from && recursion_.together(nodes_[*from].shape, shape) ? nodes_[*from].generation + 1 : 0;
     std::string key =
         key_of({.kind = Value::Kind::shape, .shape = std::make_shared<const ShapeValue>(value)});
     for (const double part : target)
         key += fmt::format("{:a},", part);
-    if (left) key += fmt::format("n{}", *left);
+    if (counts) key += fmt::format("n{}", generation);
     // Most recursion ends where its shapes are too small, so that those of each size are others.
     const double size = size_of(world);
     if (recursion_.recurs(shape) && !endless_)
@@ -218,7 +216,7 @@ std::optional<std::size_t> Unfolding::node_for(const ShapeValue& value, const Ta
         if (Node& node = nodes_[id]; size > node.size && !node.done) {
             node.size = size;
             node.world = world;
-            open_.emplace(size, id);
+            open_.emplace(turn_of(node.generation), size, id);
         }
         return id;
     }
@@ -227,12 +225,17 @@ std::optional<std::size_t> Unfolding::node_for(const ShapeValue& value, const Ta
         if (known.empty()) return std::nullopt;
         return known.front();
     }
-    Node node{.shape = shape, .value = value, .target = target, .left = left, .world = world, .size = size};
+    Node node{.shape = shape,
+              .value = value,
+              .target = target,
+              .generation = generation,
+              .world = world,
+              .size = size};
     node.seed = hash_of(key) + known.size() + 1000 * salt_ + evaluator_.seed;
     known.push_back(nodes_.size());
     // The first shape, and paths, are drawn whatever their size.
     const bool certain = !from || grammar_.shapes[shape].is_path;
-    open_.emplace(certain ? 1e300 : node.size, nodes_.size());
+    open_.emplace(turn_of(generation), certain ? 1e300 : node.size, nodes_.size());
     nodes_.push_back(std::move(node));
     return nodes_.size() - 1;
 }
@@ -319,111 +322,6 @@ void Unfolding::expand(const Elements& elements, Surroundings at, const Under& u
     }
 }
 
-void Unfolding::expand_loop(const Element& element, Surroundings at, Under under) {
-    const std::optional<LoopBounds> bounds = evaluator_.bounds(element, at);
-    if (!bounds) return;
-    double index = bounds->begin;
-    const double turns = bounds->turns();
-    if (turns >= least_even_turns && turns <= most_even_turns && is_even(element, at.space)) {
-        const std::optional<Change> change = evaluator_.change(element.modification, at);
-        if (!change) return;
-        if (std::abs(size_of(change->map) - 1) < 1e-9 && change->map.linear[2][2] == 1 &&
-            is_plain(change->colours)) {
-            under.change = expand_even(element, at, under, *change, turns);
-            index += turns * bounds->step;
-        }
-    }
-    for (; bounds->goes_on(index); index += bounds->step) {
-        if (file_.diagnostics.error_count() > 0) return;
-        file_.work(1, ImportPrice::unfolded);
-        if (++turns_ > most_loop_turns || lines_ > 2 * most_unfolded_lines)
-            return fail(element.span,
-                        fmt::format("the loops of this grammar turn more than {} times, or place more than "
-                                    "{} shapes",
-                                    most_loop_turns, 2 * most_unfolded_lines),
-                        fewer_shapes);
-        if (!element.name.empty()) at.values.insert_or_assign(element.name, Value::of(index));
-        expand(element.body, at, under);
-        const std::optional<Change> change = evaluator_.change(element.modification, at);
-        if (!change) return;
-        under.change.add(*change);
-        if (under.change.colours.size() > 64) { // as few steps as do the same
-            Change short_one{under.change.map, shortened(under.change.colours)};
-            under.change = std::move(short_one);
-        }
-    }
-    if (!element.name.empty()) at.values.insert_or_assign(element.name, Value::of(index));
-    expand(element.other, at, under);
-}
-/// Whether the turns of a loop draw the same.
-bool Unfolding::is_even(const Element& loop, const std::string& space) const {
-    const auto fixed = [&](const auto& self, const Elements& elements) -> bool {
-        return std::ranges::all_of(elements, [&](const Element& element) {
-            const std::optional<std::size_t> shape = grammar_.shape(element.name, space);
-            if (element.kind == Element::Kind::shape &&
-                (element.computed || (shape ? random_[*shape] : primitive_named(element.name).empty())))
-                return false;
-            return self(self, element.body) && self(self, element.other) &&
-                   std::ranges::all_of(element.cases, [&](const Case& one) { return self(self, one.body); });
-        });
-    };
-    const auto is_index = [&](const Expr& expression) {
-        return expression.kind == Expr::Kind::name && expression.text == loop.name;
-    };
-    return even_ && nodes_.size() < most_nodes && !chance_.decides(loop.modification, space) &&
-           !chance_.decides(loop.body, space) && fixed(fixed, loop.body) &&
-           (loop.name.empty() || (!any_part(loop.modification, is_index) && !any_part(loop.body, is_index)));
-}
-
-/// Draws parts of 1, 2, 4 and more turns, each of which draws the one before it twice. Gives the change after
-/// all turns.
-Change Unfolding::expand_even(const Element& loop, const Surroundings& at, const Under& under, Change step,
-                              double turns) {
-    std::size_t part = part_of(under.node, under.change);
-    expand(loop.body, at, {part, {}});
-    const auto place_part = [&](std::size_t in, const Change& change) {
-        if (is_unseen(change.map) || !check_bounds(change.map, loop.span)) return;
-        add_line(in, {.node = part, .map = change.map, .colours = change.colours, .span = loop.span});
-        see(nodes_[in].world * change.map);
-    };
-    const auto sum = [](const Change& first, const Change& second) {
-        Change both = first;
-        both.add(second);
-        both.colours = shortened(both.colours);
-        return both;
-    };
-    Change change = under.change;
-    for (; turns >= 1; turns = std::floor(turns / 2)) {
-        if (std::fmod(turns, 2) == 1) {
-            place_part(under.node, change);
-            change = sum(change, step);
-        }
-        if (turns < 2) break;
-        const std::size_t twice = part_of(part, {});
-        place_part(twice, {});
-        place_part(twice, step);
-        step = sum(step, step);
-        part = twice;
-    }
-    return change;
-}
-
-/// A new object of lines of the rule of a node.
-std::size_t Unfolding::part_of(std::size_t id, const Change& change) {
-    const Node& of = nodes_[id];
-    Node part{.shape = of.shape,
-              .value = of.value,
-              .target = of.target,
-              .left = of.left,
-              .world = of.world * change.map,
-              .size = of.size,
-              .done = true,
-              .part = true};
-    ink_text(change.colours, part.target);
-    nodes_.push_back(std::move(part));
-    return nodes_.size() - 1;
-}
-
 void Unfolding::expand_transform(const Element& element, const Surroundings& at, const Under& under) {
     std::vector<Change> changes;
     std::vector<Affine> maps;
@@ -453,11 +351,11 @@ void Unfolding::expand_transform(const Element& element, const Surroundings& at,
 }
 
 bool Unfolding::check_bounds(const Affine& map, Span span) {
-    const bool inside =
-        is_finite(map) && largest_entry(map.linear) <= 1e50 && largest_entry(map.translation) <= 1e50;
+    const bool inside = is_within(farthest, map);
     if (!inside) fail(span, "this grows beyond all bounds");
     return inside;
 }
+
 void Unfolding::place(const Element& element, const Surroundings& at, const Under& under) {
     const std::optional<ShapeValue> shape = evaluator_.shape(element, at);
     const std::optional<Change> own = shape ? evaluator_.change(element.modification, at) : std::nullopt;
@@ -474,13 +372,15 @@ void Unfolding::place(const Element& element, const Surroundings& at, const Unde
     const bool primitive_shape = found == grammar_.numbers.end();
     const bool fills = primitive_shape && primitive_named(shape->name).empty();
     if (is_unseen(change.map)) return;
-    if (!check_bounds(change.map, element.span) ||
-        !check_bounds(nodes_[under.node].world * change.map, element.span))
+    const Affine world = nodes_[under.node].world * change.map;
+    if (nodes_[under.node].generation > early_generations && !is_within(farthest_late, world)) {
+        full_ = true;
         return;
+    }
+    if (!check_bounds(change.map, element.span) || !check_bounds(world, element.span)) return;
     Target target = nodes_[under.node].target;
     if (!ink_text(change.colours, target))
         return fail(element.span, "this changes a colour away from another");
-    const Affine world = nodes_[under.node].world * change.map;
     Line line{.map = change.map, .colours = shortened(change.colours), .span = element.span};
     if (fills) { // all of the canvas, wherever the shape lies
         fills_ = true;

@@ -6,6 +6,7 @@
 #include <queue>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "compiler/import/cfdg/evaluate/chance.h"
@@ -30,6 +31,12 @@ class Unfolding : private SceneWriter {
     Translation write();
 
   private:
+    static constexpr const char* fewer_shapes =
+        "ask for less: fewer turns of its loops, such as a coarser grid";
+    static constexpr std::size_t most_nodes = 60'000;
+    static constexpr std::size_t most_unfolded_lines = 600'000;
+    static constexpr std::size_t most_loop_turns = 2'000'000;
+
     struct Line {
         std::string master; ///< a primitive or a polygon; "" of a node
         std::size_t node = 0;
@@ -45,7 +52,7 @@ class Unfolding : private SceneWriter {
         std::size_t shape = 0;
         ShapeValue value;
         Target target = first_target;
-        std::optional<int> left; ///< generations
+        int generation = 0; ///< of recursion without end
         std::uint64_t seed = 0;
         Affine world; ///< of the largest that is known
         double size = 0;
@@ -61,13 +68,14 @@ class Unfolding : private SceneWriter {
         Change change;
     };
 
-    /// The node for a shape, which may be new; -1 where it has no generations left.
+    /// The node for a shape, which may be new; nothing where there is no room for it.
     std::optional<std::size_t> node_for(const ShapeValue& value, const Target& target,
                                         std::optional<std::size_t> from, const Affine& world);
     std::optional<std::size_t> unfold_from(const ShapeValue& shape, const Target& target,
                                            const Affine& world);
     std::optional<std::size_t> unfold_once(const ShapeValue& shape, const Target& target,
                                            const Affine& world);
+    void warn_of_rest(Span start);
     void unfold(std::size_t id);
     void unfold_path(std::size_t id, const Surroundings& at);
     void expand(const Elements& elements, Surroundings at, const Under& under);
@@ -76,6 +84,9 @@ class Unfolding : private SceneWriter {
     Change expand_even(const Element& loop, const Surroundings& at, const Under& under, Change step,
                        double turns);
     std::size_t part_of(std::size_t id, const Change& change);
+    /// Whether nothing is seen of a part: its thickness of 1 is so much larger than it that the language would
+    /// call its map flat.
+    static bool is_unseen(const Affine& map);
     bool check_bounds(const Affine& map, Span span);
     bool is_call(const Line& line) const;
     void expand_transform(const Element& element, const Surroundings& at, const Under& under);
@@ -107,11 +118,11 @@ class Unfolding : private SceneWriter {
     std::map<std::string, std::vector<std::size_t>> known_;    ///< nodes by shape, arguments and target
     std::map<std::string, std::size_t> uses_;                  ///< of random ones
     std::vector<std::size_t> named_;                           ///< objects of each shape
-    std::priority_queue<std::pair<double, std::size_t>> open_; ///< by size
+    std::priority_queue<std::tuple<int, double, std::size_t>> open_; ///< by turn and size
     Vec3 least_{1e300}, most_{-1e300};                         ///< of what is drawn
     double extent_ = 0;
     std::size_t lines_ = 0, turns_ = 0, colour_steps_ = 0, written_ = 0;
-    bool full_ = false, fills_ = false, noted_ = false, drawn_ = false;
+    bool full_ = false, fills_ = false, drawn_ = false;
     bool stretches_ = false; ///< some path depends on how its place stretches
     bool even_ = true;       ///< turns of loops that draw the same may be parts
     bool endless_ = false;   ///< all recursion has no end: its shapes hold themselves

@@ -104,8 +104,34 @@ TEST(ContextFree, RecursionThatShrinksHasNoEnd) {
     EXPECT_EQ(model.leaves(100).size(), 100u);
     const ImportedShapes endless("a.cfdg",
                                  "startshape A\nCF::Size = [s 2000]\nshape A { CIRCLE [] A [x 1] }");
-    EXPECT_THAT(endless.said(), HasSubstr("note: 'A' calls itself without becoming smaller"));
-    EXPECT_EQ(endless.leaves().size(), 2000u);
+    EXPECT_THAT(endless.said(), HasSubstr("warning: 'A' calls itself without becoming smaller"));
+    EXPECT_GT(endless.leaves().size(), 50'000u);
+}
+
+// A chaos game takes what room the others leave: a shape of many sizes, and a second game.
+TEST(ContextFree, GamesWithoutEndLeaveRoomForOthers) {
+    const ImportedShapes model("a.cfdg", "startshape S\nshape S { A [x 1] B [x -1] T [y 3] }\n"
+                                         "shape A { CIRCLE [s 0.01] A [r 77 x 0.01] }\n"
+                                         "shape B { TRIANGLE [s 0.01] B [r 99 x 0.01] }\n"
+                                         "shape T { SQUARE [] T [s 0.9 y 1.2 b 0.01] }\n");
+    ASSERT_TRUE(model.graph) << model.said();
+    EXPECT_THAT(model.said(), HasSubstr("warning: 'A' calls itself without becoming smaller"));
+    const auto drawn = [&](const std::string& primitive) {
+        std::size_t lines = 0;
+        for (std::size_t at = 0; (at = model.translation.find(primitive, at)) != std::string::npos; ++at)
+            ++lines;
+        return lines;
+    };
+    EXPECT_GT(drawn("instance: CIRCLE"), 29'000u);
+    EXPECT_GT(drawn("instance: TRIANGLE"), 29'000u);
+    EXPECT_GT(drawn("instance: SQUARE"), 30u);
+}
+
+TEST(ContextFree, GamesThatGrowEndBeforeTheirNumbersDo) {
+    const ImportedShapes model("a.cfdg", "startshape A\nshape A { CIRCLE [s 0.1] A [r 10 x 1 s 1.01] }");
+    ASSERT_TRUE(model.graph) << model.said();
+    EXPECT_GT(model.leaves().size(), 2000u);
+    EXPECT_LT(model.leaves().size(), 4000u);
 }
 
 /// The number of objects in a translation.

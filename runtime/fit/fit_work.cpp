@@ -21,8 +21,8 @@ namespace {
 constexpr std::uint64_t first_piece = 16, growth_of_pieces = 4, pixels_a_ray = 16, least_last = 256;
 /// Rays that are traced before a picture is drawn by what they took.
 constexpr std::uint64_t rays_before_draft = 64;
-/// Shares of the work: of a look, and of all looks.
-constexpr double most_for_a_look = 0.04, most_for_looks = 0.2;
+/// Shares of the work: of a look, and of all looks; and seconds, for rays enough tell the price of a poster.
+constexpr double most_for_a_look = 0.04, most_for_looks = 0.2, longest_look = 1, longest_looks = 5;
 constexpr double steps_a_visit = 2 * RayWork::part;
 /// The growth of the error from one try to the next: less for the first tries.
 constexpr double coarser = 1.5;
@@ -119,7 +119,7 @@ class Fitting {
         Choice best = choice(factor_, price_);
         for (int tries = 1; factor_ < coarsest; ++tries) {
             if (!(std::log2(factor_ * coarser) < best.loss)) break;
-            if (tried_seconds_ > most_for_looks * work_seconds_ && best.loss < infinite_loss) break;
+            if (tried_seconds_ > seconds_of_looks() && best.loss < infinite_loss) break;
             const double factor_before = factor_;
             const Price price_before = price_;
             make_anew(factor_ * next_step(tries));
@@ -145,7 +145,7 @@ class Fitting {
     double next_step(int tries) const {
         const bool nothing_left = tried_seconds_ > work_seconds_;
         if (nothing_left || broken_looks_ >= most_broken_looks) return std::max(coarsest / factor_, coarser);
-        if (tried_seconds_ > most_for_looks * work_seconds_) return coarser * coarser * coarser;
+        if (tried_seconds_ > seconds_of_looks()) return coarser * coarser * coarser;
         return tries <= small_tries && broken_looks_ == 0 ? coarser : coarser * coarser;
     }
 
@@ -235,8 +235,12 @@ class Fitting {
 
     double second_of_steps() const { return slowness_ / WorkRates::ray_steps; }
 
+    double seconds_of_looks() const { return std::min(most_for_looks * work_seconds_, longest_looks); }
+
     /// Steps that a look may take.
-    double steps_of_a_look() const { return most_for_a_look * work_seconds_ / second_of_steps(); }
+    double steps_of_a_look() const {
+        return std::min(most_for_a_look * work_seconds_, longest_look) / second_of_steps();
+    }
 
     /// Traces rays all over the picture, piece by piece, until the steps of a look are spent. A ray that
     /// would go on for longer than they allow is given up, and counts as if it went on to the end.

@@ -194,6 +194,17 @@ TEST_F(FitWork, LooksNoLongerThanItMay) {
     EXPECT_LT(model.tried_seconds, options.work_seconds);
 }
 
+// A look at a poster took a share of all its work: a plan of 36 million pixels, a minute.
+TEST_F(FitWork, LooksNoLongerAtAPoster) {
+    view_.size = {20'000, 20'000};
+    DetailOptions options;
+    options.steps = 6;
+    options.work_seconds = 1e5;
+    const FittedModel model = fitted(inner_cubes(), options, [](double) { return false; });
+    EXPECT_LT(model.tried_seconds, 2);
+    EXPECT_LT(model.seconds, options.work_seconds);
+}
+
 // Rays went through all of a mesh, whatever they had left: 200,000 spikes took twelve seconds of one allowed.
 TEST_F(FitWork, RaysGiveWayInMeshes) {
     std::mt19937 generator(5);

@@ -175,7 +175,9 @@ class Animation {
         std::vector<double> seconds; // of the first few
         for (std::size_t i = 0; i < missing.size(); ++i) {
             const Clock::time_point begin = Clock::now();
-            if (!draw_frame(missing[i], clock.seconds_left(missing.size() - i))) return false;
+            std::optional<double> seconds_left = clock.seconds_left(missing.size() - i);
+            if (seconds_left) *seconds_left += assembling_seconds();
+            if (!draw_frame(missing[i], seconds_left)) return false;
             clock.add(seconds_since(begin));
             drawn_.push_back(missing[i]);
             ++outcome_.drawn;

@@ -39,6 +39,7 @@ struct FlatGame {
     std::uint32_t settling = 0;       ///< moves until where a point began is forgotten
     bool formulas = false;            ///< in place of affine maps
     glm::vec4 origin{0.0};            ///< of walkers
+    float restart = 0;                ///< OrbitModel::restart
     bool climbs = false;              ///< from a core to the world
     bool leaves = false;              ///< only by chance
     bool flat = false;                ///< x and y of no map depend on z

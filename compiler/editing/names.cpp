@@ -378,6 +378,7 @@ class Collector {
         }
         expressions(scope, orbit.start);
         expression(scope, orbit.skip);
+        expression(scope, orbit.restart);
     }
 
     // `.inst`

@@ -92,6 +92,7 @@ constexpr Row rows[] = {
     {bit(P::orbit), {"follow", "follow matrix { ROWS }", "A row for each map: factors of the probabilities of the maps after it."}},
     {bit(P::orbit), {"start", "start x, y [, z]", "The first point."}},
     {bit(P::orbit), {"skip", "skip n", "How many of the first points do not count; 100 if not given."}},
+    {bit(P::orbit), {"restart", "restart r", "A point that runs away or has no value begins again at random x and y from -r to r."}},
     {bit(P::orbit), {"x", "x = formula", "The new x; on the right, x, y and z are the old ones."}},
     {bit(P::orbit), {"y", "y = formula", "The new y."}},
     {bit(P::orbit), {"z", "z = formula", "The new z, if the orbit moves in space."}},

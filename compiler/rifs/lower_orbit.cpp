@@ -36,6 +36,7 @@ class OrbitLowering {
         model_.name = block_.name.text;
         model_.span = block_.name.span;
         lower_start();
+        lower_restart();
         RifsLooks looks(model_.lets, model_.scene.materials, diagnostics_);
         if (block_.maps.empty())
             diagnostics_.error(block_.name.span, fmt::format("'orbit {}' has no map", block_.name.text))
@@ -142,6 +143,15 @@ class OrbitLowering {
                 fmt::format("'skip' must be a whole number from 0 to 1e9, not {}", shortest(skip)));
         else
             model_.skip = static_cast<std::uint64_t>(skip);
+    }
+
+    void lower_restart() {
+        if (!block_.restart) return;
+        model_.restart = evaluate(expanded(*block_.restart), model_.lets, diagnostics_).value_or(1);
+        if (!(model_.restart > 0 && model_.restart <= farthest_of_orbit))
+            diagnostics_.error(block_.restart->span,
+                               fmt::format("'restart' must be above 0 and at most {}, not {}",
+                                           shortest(farthest_of_orbit), shortest(model_.restart)));
     }
 
     std::optional<OrbitFormulas> lower_map(const OrbitMap& map, RifsLooks& looks) {

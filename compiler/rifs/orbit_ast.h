@@ -44,7 +44,7 @@ struct OrbitBlock {
     std::optional<OrbitMap> last;     ///< `final`: of what is shown of each point
     std::optional<RifsFollow> follow; ///< a matrix
     std::vector<Expression> start;    ///< none, two or three
-    std::optional<Expression> skip;
+    std::optional<Expression> skip, restart;
     Span span; ///< of the keyword and the name
 };
 

@@ -32,7 +32,9 @@ struct OrbitModel {
     std::string name;
     Vec3 start{0.0};
     std::uint64_t skip = 100; ///< points at the beginning that do not count
-    bool flat = true;         ///< z stays 0
+    /// If above 0, a point that goes astray begins again at random x and y from -restart to restart.
+    double restart = 0;
+    bool flat = true; ///< z stays 0
     std::vector<OrbitFormulas> maps;
     std::optional<OrbitFormulas> last; ///< from a point to what is shown of it
     /// Factors of the probabilities of the maps after each map, row by row; empty: all are 1. Each row has
@@ -47,8 +49,8 @@ struct OrbitModel {
     void report(std::size_t map, Vec3 point, std::span<const double> draws, Diagnostics& diagnostics) const;
 };
 
-/// Farther from the origin an orbit counts as diverging.
-inline constexpr double farthest_of_orbit = 1e12;
+/// Farther from the origin an orbit counts as diverging, as in flam3.
+inline constexpr double farthest_of_orbit = 1e10;
 
 /// Applies the map; nothing where a formula has no value. `draws`: all_draws uniform numbers of [0, 1).
 /// `slots` is for its memory.

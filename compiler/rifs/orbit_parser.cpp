@@ -52,13 +52,15 @@ class OrbitParser {
     bool parse_item() {
         if (stream_.at("start")) return parse_start();
         if (stream_.at("skip")) return parse_number(block_.skip);
+        if (stream_.at("restart")) return parse_number(block_.restart);
         if (stream_.at("map")) return parse_map();
         if (stream_.at("final") && !stream_.peek(1).is("(")) return parse_final();
         if (stream_.at("follow") && !stream_.peek(1).is("(")) return parse_follow();
         if (stream_.at("let")) return parse_lets(block_.lets);
         if (stream_.at_name() && stream_.peek(1).is("(")) return parse_function();
         if (at_map_item()) return parse_map_item(sole_map());
-        return unknown("'map', 'x =', 'y =', 'final', 'follow', 'start', 'skip', 'let', NAME(x) = or '}'",
+        return unknown("'map', 'x =', 'y =', 'final', 'follow', 'start', 'skip', 'restart', 'let', NAME(x) = "
+                       "or '}'",
                        {orbit_words.begin(), orbit_words.end()});
     }
 

@@ -310,8 +310,13 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
         return std::nullopt;
     }
     const OrbitSource source(model, options.compile.lower.seed.value_or(0));
-    const Box box = source.survey(std::min(point_count(options), most_surveyed));
+    const auto [box, astray] = source.survey(std::min(point_count(options), most_surveyed));
     if (source.report(compilation.diagnostics)) return std::nullopt;
+    if (astray > 0.9)
+        compilation.diagnostics.warning(
+            model.span, fmt::format("{:.0f} of 100 points of this orbit run away or have no value, and begin "
+                                    "again at random: there is little else in the picture",
+                                    std::floor(100 * astray)));
     PointsReport report;
     report.maps = static_cast<std::uint32_t>(model.maps.size());
     const View view = frame_graph(model.scene, {box, {}}, options.compile.view);

@@ -74,6 +74,7 @@ std::optional<FlatGame> OrbitSource::flat(const Affine& seen_from_world, const L
     flat.slots = steps.slots;
     flat.settling = static_cast<std::uint32_t>(model_.skip);
     flat.origin = glm::vec4(model_.start, 0);
+    flat.restart = static_cast<float>(model_.restart);
     flat.sees_through = std::pow(most_open, flat.settling) > 1e-4;
     for (const Material& material : model_.scene.materials)
         flat.add_colour(material.rgb);

@@ -270,7 +270,8 @@ Status GpuPoints::add_to(Accumulation& picture, FlatGame game, const Work& work)
     job.work[0] = walkers_for(work.points, game);
     job.start = {game.start.first, game.start.count, game.settling,
                  static_cast<std::uint32_t>(game.colours.size() - 1)};
-    job.orbit = {game.links.size() - 1, game.core_colour, game.first_form, 0};
+    job.orbit = {game.links.size() - 1, game.core_colour, game.first_form,
+                 std::bit_cast<std::uint32_t>(game.restart)};
     job.sources = {game.sources.first, game.sources.count, 0, 0};
     job.origin = game.origin;
     if (Status status = load(game, work, job.work[0], std::size_t{width} * rows); !status.ok()) return status;

@@ -24,8 +24,8 @@ class OrbitSource::Stream : public PointStream {
             point.place = place_;
             if (const auto& last = source_.model_.last) {
                 const std::optional<Vec3> shown = mapped(*last, source_.model_.maps.size());
-                if (!shown) return false;
-                point.place = *shown;
+                if (!shown && !restarts()) return false;
+                point.place = shown ? *shown : random_place();
                 look(*last, paint, base);
             }
             for (int k = 0; k < 3; ++k)
@@ -36,27 +36,43 @@ class OrbitSource::Stream : public PointStream {
         return true;
     }
 
+    double astray() const { return static_cast<double>(astray_) / static_cast<double>(moves_); }
+
   private:
+    /// Begins again where a map leads astray, as flam3 does: the map after it is chosen as if there had been
+    /// none, and after five in sequence the point counts where it is.
     bool step() {
+        constexpr int most_astray = 5; // MOST_ASTRAY of the kernel
         const std::size_t state = steps_ > 0 && source_.choices_.size() > 1 ? map_ + 1 : 0;
-        map_ = source_.single() ? 0 : source_.tables_.choose(source_.choices_[state], random_.bits());
         ++steps_;
-        const OrbitFormulas& map = source_.model_.maps[map_];
-        const std::optional<Vec3> next = mapped(map, map_);
-        if (!next) return false;
-        place_ = *next;
-        look(map, paint_, base_);
-        return true;
+        for (int attempt = 1;; ++attempt) {
+            map_ = source_.single() ? 0 : source_.tables_.choose(source_.choices_[state], random_.bits());
+            const OrbitFormulas& map = source_.model_.maps[map_];
+            const std::optional<Vec3> next = mapped(map, map_);
+            if (!next && !restarts()) return false;
+            ++moves_;
+            astray_ += next ? 0 : 1;
+            place_ = next ? *next : random_place();
+            look(map, paint_, base_);
+            if (next || attempt == most_astray) return true;
+        }
     }
 
-    /// The image of the point; nothing, and a note, where it goes astray.
+    bool restarts() const { return source_.model_.restart > 0; }
+
+    Vec3 random_place() {
+        const double far = source_.model_.restart, x = random_.unit(), y = random_.unit();
+        return {far * (2 * x - 1), far * (2 * y - 1), 0};
+    }
+
+    /// The image of the point; nothing where it goes astray, and a note where nothing goes on then.
     std::optional<Vec3> mapped(const OrbitFormulas& map, std::size_t number) {
         draws_.resize(map.all_draws);
         for (double& draw : draws_)
             draw = random_.unit();
         const std::optional<Vec3> image = apply(map, place_, draws_, slots_);
         if (image && near(*image)) return image;
-        source_.note({number_, steps_, number, place_, image.has_value(), draws_});
+        if (!restarts()) source_.note({number_, steps_, number, place_, image.has_value(), draws_});
         return std::nullopt;
     }
 
@@ -76,7 +92,7 @@ class OrbitSource::Stream : public PointStream {
     Paint paint_;
     Rgb base_ = Material{}.rgb;
     std::size_t map_ = 0;
-    std::uint64_t steps_ = 0;
+    std::uint64_t steps_ = 0, moves_ = 0, astray_ = 0;
     std::vector<double> draws_, slots_;
 };
 
@@ -97,18 +113,19 @@ std::unique_ptr<PointStream> OrbitSource::stream(std::uint64_t number) const {
     return std::make_unique<Stream>(*this, number);
 }
 
-Box OrbitSource::survey(std::uint64_t points) const {
-    Box box;
-    const std::unique_ptr<PointStream> first = stream(0);
+OrbitSource::Survey OrbitSource::survey(std::uint64_t points) const {
+    Survey survey;
+    Stream first(*this, 0);
     std::vector<ChaosPoint> batch(512);
     for (std::uint64_t left = points; left > 0;) {
         const std::span<ChaosPoint> room(batch.data(), std::min<std::uint64_t>(batch.size(), left));
-        if (!first->fill(room)) return box;
+        if (!first.fill(room)) return survey;
         for (const ChaosPoint& point : room)
-            box.include(point.place);
+            survey.box.include(point.place);
         left -= room.size();
+        survey.astray = first.astray();
     }
-    return box;
+    return survey;
 }
 
 void OrbitSource::note(const Astray& astray) const {

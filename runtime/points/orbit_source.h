@@ -20,8 +20,12 @@ class OrbitSource : public PointSource {
     std::optional<FlatGame> flat(const Affine& seen_from_world, const LabelColour& colour_of,
                                  std::string& why) const override;
 
-    /// The box of the first points of the first sequence.
-    Box survey(std::uint64_t points) const;
+    struct Survey {
+        Box box;
+        double astray = 0; ///< the share of moves that go astray and begin again
+    };
+    /// The first points of the first sequence.
+    Survey survey(std::uint64_t points) const;
     /// Reports, if a sequence has gone astray, where and why; of several that have, the first.
     bool report(Diagnostics& diagnostics) const;
 

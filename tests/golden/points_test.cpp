@@ -92,7 +92,7 @@ TEST_F(CommandLine, PointsThatFailLeaveNothing) {
     write("o.rifs", "orbit o { x = 3*x + 1\n  y = 0 }\n");
     result = graftal("points o.rifs -o b.png");
     EXPECT_EQ(result.status, 1);
-    EXPECT_THAT(result.err, StartsWith("o.rifs:1:11: error: the orbit diverges: in step 26 it goes from <"));
+    EXPECT_THAT(result.err, StartsWith("o.rifs:1:11: error: the orbit diverges: in step 22 it goes from <"));
     write("p.rifs", "rifs p { map a { scale 1/2 probability 0 } }\n");
     result = graftal("points p.rifs");
     EXPECT_EQ(result.status, 1);

@@ -84,8 +84,8 @@ class Unfolding : private SceneWriter {
     Change expand_even(const Element& loop, const Surroundings& at, const Under& under, Change step,
                        double turns);
     std::size_t part_of(std::size_t id, const Change& change);
-    /// Whether nothing is seen of a part: its thickness of 1 is so much larger than it that the language would
-    /// call its map flat.
+    /// Whether nothing is seen of a part: its thickness of 1 is so much larger than it that the language
+    /// would call its map flat.
     static bool is_unseen(const Affine& map);
     bool check_bounds(const Affine& map, Span span);
     bool is_call(const Line& line) const;
@@ -115,11 +115,11 @@ class Unfolding : private SceneWriter {
     Recursion recursion_;
     std::vector<bool> random_; ///< by shape: whether chance decides in it or below it
     std::vector<Node> nodes_;
-    std::map<std::string, std::vector<std::size_t>> known_;    ///< nodes by shape, arguments and target
-    std::map<std::string, std::size_t> uses_;                  ///< of random ones
-    std::vector<std::size_t> named_;                           ///< objects of each shape
+    std::map<std::string, std::vector<std::size_t>> known_;          ///< nodes by shape, arguments and target
+    std::map<std::string, std::size_t> uses_;                        ///< of random ones
+    std::vector<std::size_t> named_;                                 ///< objects of each shape
     std::priority_queue<std::tuple<int, double, std::size_t>> open_; ///< by turn and size
-    Vec3 least_{1e300}, most_{-1e300};                         ///< of what is drawn
+    Vec3 least_{1e300}, most_{-1e300};                               ///< of what is drawn
     double extent_ = 0;
     std::size_t lines_ = 0, turns_ = 0, colour_steps_ = 0, written_ = 0;
     bool full_ = false, fills_ = false, drawn_ = false;

@@ -71,8 +71,6 @@ class Writer {
     }
 
   private:
-    static constexpr const char *start_x = "0.1", *start_y = "0.2";
-
     static std::string comment(const std::string& words) { return "# " + comment_text(words); }
     static std::string own_name(const std::string& name) {
         const std::string plain = plain_name(name);
@@ -218,7 +216,8 @@ class Writer {
                 .with_hint("the model is an orbit: 'graftal points' draws it");
         write_camera();
         out_.line(fmt::format("orbit {} {{", name_));
-        out_.line(fmt::format("  start {}, {}", start_x, start_y));
+        out_.line("  start 0.1, 0.2");
+        out_.line("  restart 1   # as flam3 does with points that run away or have no value");
         std::vector<std::size_t> branches;
         for (const Map& map : flame_.maps)
             good = write_map(map, branches) && good;
@@ -323,18 +322,16 @@ class Writer {
         };
         out_.line("    let p = " + sum_or_zero(&Formula::x));
         out_.line("    let q = " + sum_or_zero(&Formula::y));
-        out_.line("    let near = abs(p) < 1e10 && abs(q) < 1e10");
     }
 
-    /// The new coordinates; `far_x` and `far_y` of a point that runs away.
-    void write_image(const Affine& post, const char* far_x, const char* far_y) {
+    void write_image(const Affine& post) {
         const auto after = [&](std::size_t axis, double translation, const char* unmoved) {
             if (post == Affine()) return std::string(unmoved);
             return fmt::format("({}) * p + ({}) * q + ({})", number(post.linear[0][axis]),
                                number(post.linear[1][axis]), number(translation));
         };
-        out_.line(fmt::format("    x = choose(near, {}, {})", after(0, post.translation.x, "p"), far_x));
-        out_.line(fmt::format("    y = choose(near, {}, {})", after(1, post.translation.y, "q"), far_y));
+        out_.line("    x = " + after(0, post.translation.x, "p"));
+        out_.line("    y = " + after(1, post.translation.y, "q"));
     }
 
     /// Maps of the orbit, one for each way, whose number is added to `branches`.
@@ -343,7 +340,7 @@ class Writer {
         for (const Way& way : ways) {
             out_.line("  map {", map.span);
             write_way(map, way);
-            write_image(map.post, start_x, start_y); // it begins anew, as in flam3
+            write_image(map.post);
             out_.line(fmt::format("    probability {}{}",
                                   number(map.weight / static_cast<double>(ways.size())), tint(map)));
             out_.line("  }");
@@ -367,7 +364,7 @@ class Writer {
         out_.line("  final {", map.span);
         if (ways.size() > 1) out_.line(fmt::format("    let way = random(0, {})", ways.size()));
         write_way(map, all);
-        write_image(map.post, "1e10", "1e10");
+        write_image(map.post);
         if (const std::string shade = tint(map); !shade.empty()) out_.line("  " + shade);
         out_.line("  }");
         return true;

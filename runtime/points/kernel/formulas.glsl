@@ -155,7 +155,7 @@ float value_of(uvec4 step) {
     return NO_VALUE;
 }
 
-#define FARTHEST 1e12f
+#define FARTHEST 1e10f
 
 /// Maps a place by the formulas of a map; false where it goes astray.
 bool compute(uint map, INOUT(vec3) place, INOUT(uvec4) random) {

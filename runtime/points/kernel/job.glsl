@@ -5,7 +5,7 @@ struct Job {
     uvec4 work;   // walkers; points of each; of them those with one more; what to do
     uvec4 start;  // first slot and slots of the table of beginnings; moves to settle; index of the last colour
     uvec4 more;   // seed; cells; levels of a colour
-    uvec4 orbit;  // its last move; index of the colour behind the core; first form
+    uvec4 orbit;  // its last move; index of the colour behind the core; first form; OrbitModel::restart, a float
     uvec4 sources; // first slot and slots of their table
     vec4 origin;  // where walkers begin
 };

@@ -138,25 +138,41 @@ uint counted(Point point, uint material, INOUT(uvec4) random) {
 
 #include "runtime/points/kernel/surfaces.glsl"
 
+#define MOST_ASTRAY 5u // in sequence, before a point counts
+
+/// A place where an orbit begins again; false if it does not.
+bool begin_again(INOUT(vec3) place, INOUT(uvec4) random) {
+    const float far = float_of(job.orbit.w);
+    if (!(far > 0.0f)) return false;
+    const float x = unit_of(next_random(random)), y = unit_of(next_random(random));
+    place = vec3(far * (2.0f * x - 1.0f), far * (2.0f * y - 1.0f), 0.0f);
+    return true;
+}
+
 /// Moves a point on; false where that is impossible.
 bool wander(INOUT(Point) point, INOUT(uvec4) at, INOUT(uvec4) random) {
-    const uint move = chosen(at, random);
-    const uint material = at.w;
-    at = links(move);
-    point.paint = painted(point.paint, move);
-    if (!FORMULAS) {
-        point.place = mapped(point.place, move);
-        return true;
+    const uvec4 table = at;
+    for (uint attempt = 1u; attempt <= MOST_ASTRAY; ++attempt) {
+        const uint move = chosen(table, random);
+        const uint material = at.w;
+        at = links(move);
+        point.paint = painted(point.paint, move);
+        if (!FORMULAS) {
+            point.place = mapped(point.place, move);
+            return true;
+        }
+        if (at.w == NO_MATERIAL) at.w = material;
+        if (compute(move, point.place, random)) return true;
+        if (!begin_again(point.place, random)) return false;
     }
-    if (at.w == NO_MATERIAL) at.w = material;
-    return compute(move, point.place, random);
+    return true;
 }
 
 /// Counts what is shown of an orbit's point. Behind the maps is the last move: the formulas of `final`, if there are
 /// any, and the way to what is seen.
 bool count_orbit(Point point, uint material, INOUT(uint) inside, INOUT(uvec4) random) {
     const uint last = job.orbit.x;
-    if (states(last).y > 0u && !compute(last, point.place, random)) return false;
+    if (states(last).y > 0u && !compute(last, point.place, random) && !begin_again(point.place, random)) return false;
     const uint of_last = links(last).w;
     point.place = mapped(point.place, last);
     point.paint = painted(point.paint, last);

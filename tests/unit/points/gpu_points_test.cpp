@@ -2,8 +2,11 @@
 
 #include "runtime/points/gpu_points.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -80,7 +83,8 @@ std::vector<std::uint32_t> by_text(const FlatGame& game, std::uint32_t points) {
     text::words.assign(static_cast<std::size_t>(small.width) * small.height, 0);
     text::job.window = {small.width, small.height, 0, small.height};
     text::job.start = {game.start.first, game.start.count, game.settling, last};
-    text::job.orbit = {game.links.size() - 1, game.core_colour, game.first_form, 0};
+    text::job.orbit = {game.links.size() - 1, game.core_colour, game.first_form,
+                       std::bit_cast<std::uint32_t>(game.restart)};
     text::job.sources = {game.sources.first, game.sources.count, 0, 0};
     text::job.more = {7, 0, text::words.size(), 1};
     constexpr std::uint32_t walkers = 128; // as few points have
@@ -324,6 +328,28 @@ TEST(GpuPoints, FormulasHaveTheirValues) {
     }
     EXPECT_GT(values, 2000);
     EXPECT_GT(none, 100);
+}
+
+/// One in two moves of each map has no value: see Points.OrbitsMayBeginAgain.
+TEST(GpuPoints, OrbitsBeginAgainInTheKernelsText) {
+    const std::string map = "map { x = 1/floor(random(0, 2))  y = 0 }\n";
+    SourceMap sources;
+    Diagnostics diagnostics;
+    LowerOptions options;
+    options.may_be_orbit = true;
+    const auto lowered =
+        lower_text("o.rifs", "orbit o { restart 0.9\n" + map + map + "}", options, sources, diagnostics);
+    ASSERT_TRUE(lowered.notes.orbit) << diagnostics.render(sources);
+    std::string why;
+    const std::optional<FlatGame> flat =
+        OrbitSource(*lowered.notes.orbit, 1)
+            .flat(PointProjection(camera_at({0, 0, 0}, 3.07), small).picture_from_world(), {}, why);
+    ASSERT_TRUE(flat) << why;
+    const std::vector<std::uint32_t> cells = by_text(*flat, many);
+    const double all = std::accumulate(cells.begin(), cells.end(), 0.0);
+    EXPECT_EQ(all, many); // none is lost
+    EXPECT_NEAR(*std::ranges::max_element(cells) / all, 31.0 / 32, 0.001);
+    EXPECT_GT(std::ranges::count_if(cells, [](std::uint32_t points) { return points > 0; }), 600);
 }
 
 TEST(GpuPoints, OrbitsHaveTheMeasureOfTheProcessors) {

@@ -39,7 +39,7 @@ class PagesThatTeach : public CommandLine {
 TEST_F(PagesThatTeach, TheTutorialsModelsAreDrawnByItsCommands) {
     read_page("docs/tutorial.md");
     const std::vector<std::string> models = save_models();
-    EXPECT_EQ(models.size(), 10u) << "one a step";
+    EXPECT_EQ(models.size(), 11u) << "one a step";
     std::set<std::string> drawn;
     for (const std::string& command : commands_of("docs/tutorial.md")) {
         const RunResult result = graftal(command + " --size 24x18 --antialias off -q");

@@ -133,7 +133,7 @@ bool is_picture_name(const std::string& path) {
 }
 
 Status read_rows(const std::string& path, RowSink& sink) {
-    if (is_special_file(path)) return failure("read", path, "it is not a regular file");
+    if (is_special_file(path)) return failure("read", path, "it is " + special_file_text(path));
     const std::string error = read(path, sink);
     return error.empty() ? Status() : failure("read", path, error);
 }

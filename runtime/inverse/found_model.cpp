@@ -235,9 +235,15 @@ std::optional<FoundModel> find_model(const FindOptions& options, const CancelFla
         static_cast<std::size_t>(std::count(crop.set.cells.begin(), crop.set.cells.end(), true));
     if (cells < least_cells) {
         compilation.diagnostics
-            .error({}, fmt::format("the target '{}' has only {} pixel{}: too few to tell maps by",
-                                   options.target, cells, cells == 1 ? "" : "s"))
-            .with_hint(fmt::format("draw it larger, with at least {} pixels", least_cells));
+            .error({}, fmt::format(
+                           "the target '{}' is too small to tell maps by: only {} of its {}x{} pixels "
+                           "{} {}",
+                           options.target, cells, picture.width, picture.height, cells == 1 ? "is" : "are",
+                           criterion_text(options.criterion, picture.by_alpha)))
+            .with_hint(
+                fmt::format("a figure has at least {} such pixels: draw it larger, take paler pixels by "
+                            "--threshold 0.8, or the light ones by --light",
+                            least_cells));
         return std::nullopt;
     }
     const Target target(crop.set);

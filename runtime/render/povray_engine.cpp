@@ -21,6 +21,10 @@
 
 namespace graftal {
 
+double povray_seconds(Quality quality) {
+    return by_quality(quality, 20.0, 40.0, 1200.0);
+}
+
 namespace {
 
 /// Where the scene goes: the directory to keep, or a temporary one.
@@ -156,9 +160,8 @@ void note_lacks(const CompiledModel& model, Diagnostics& diagnostics) {
             .with_hint("use '--engine native' to draw the 'blur' of materials");
 }
 
-/// Seconds of one processor that a picture may take: with the usual quality, twenty of two processors.
 double work_of(const RenderOptions& options, Quality quality) {
-    return options.work_seconds.value_or(by_quality(quality, 20.0, 40.0, 1200.0));
+    return options.work_seconds.value_or(povray_seconds(quality));
 }
 
 /// The lights that POV-Ray is to follow, and how many they are.

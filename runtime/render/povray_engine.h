@@ -7,6 +7,10 @@ namespace graftal {
 /// POV-Ray, as a child process.
 extern const Engine povray_engine;
 
+/// Seconds of one processor that a picture may take unless the options say so: with the usual quality, twenty
+/// of two processors.
+double povray_seconds(Quality quality);
+
 /// Results of a rendering by POV-Ray.
 struct PovrayReport {
     double leaf_count = 0;

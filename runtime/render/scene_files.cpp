@@ -110,7 +110,7 @@ Status copy_to_standard_output(std::FILE* file) {
 } // namespace
 
 Status write_scene(const CompiledModel& model, const std::string& path, const SceneForm& form,
-                   TextureStore& textures, const CancelFlag& cancel) {
+                   TextureStore& textures, const CancelFlag& cancel, std::vector<std::string>* pictures) {
     const PovrayOptions options{.scene_name = model_name(model),
                                 .include = form.include,
                                 .file_name = std::filesystem::path(path).filename().string(),
@@ -136,6 +136,9 @@ Status write_scene(const CompiledModel& model, const std::string& path, const Sc
         if (status.ok()) status = palettes_status;
     }
     if (status.ok() && cancel.raised()) status = Status::failure("interrupted");
+    if (pictures)
+        for (const PaletteImage& palette : palettes)
+            pictures->push_back(palette.file_name);
     return status.ok() ? pending_palettes.commit_with(pending) : status;
 }
 

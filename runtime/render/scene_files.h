@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compiler/povray/cut/compile.h"
 #include "compiler/scene/light_list.h"
@@ -19,9 +20,11 @@ struct SceneForm {
 };
 
 /// Writes the model as SDL to `path`, and the palettes and pictures that it refers to beside it, each whole
-/// or not at all. A raised flag ends it early as a failure, "interrupted".
+/// or not at all. A raised flag ends it early as a failure, "interrupted". `pictures`, if not null, gets the
+/// names of the files beside it.
 Status write_scene(const CompiledModel& model, const std::string& path, const SceneForm& form,
-                   TextureStore& textures, const CancelFlag& cancel = {});
+                   TextureStore& textures, const CancelFlag& cancel = {},
+                   std::vector<std::string>* pictures = nullptr);
 
 /// Writes the scene to standard output. Fails if the model needs palette files: there is no place for them.
 Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagnostics,

@@ -19,7 +19,8 @@ class DiskFiles final : public Files {
         std::error_code code;
         if (!std::filesystem::exists(path, code))
             return Status::failure(fmt::format("cannot open '{}': {}", path, std::strerror(ENOENT)));
-        if (is_special_file(path)) return Status::failure(fmt::format("'{}' is not a regular file", path));
+        if (is_special_file(path))
+            return Status::failure(fmt::format("'{}' is {}", path, special_file_text(path)));
         return {};
     }
     Status read(const std::string& path, std::string& text) const override { return read_text(path, text); }

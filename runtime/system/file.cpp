@@ -84,6 +84,12 @@ bool is_special_file(const std::string& path) {
     return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
 }
 
+std::string special_file_text(const std::string& path) {
+    std::error_code error;
+    return std::filesystem::is_directory(path, error) ? "a folder, not a file: name a file in it"
+                                                      : "not a regular file";
+}
+
 bool lies_in(const std::string& path, const std::string& folder) {
     std::error_code error, folder_error;
     // A path need not exist to its end, but a link without a target leads nowhere, and is refused.
@@ -99,7 +105,7 @@ bool lies_in(const std::string& path, const std::string& folder) {
 Status read_text(const std::string& path, std::string& text, std::size_t max_bytes) {
     if (path == "-") return read_stream(stdin, "standard input", text, max_bytes);
     if (is_special_file(path))
-        return Status::failure(fmt::format("cannot read '{}': not a regular file", path));
+        return Status::failure(fmt::format("cannot read '{}': it is {}", path, special_file_text(path)));
     const OpenFile file(std::fopen(path.c_str(), "rb"));
     if (!file) return system_failure("open", path);
     return read_stream(file.get(), path, text, max_bytes);

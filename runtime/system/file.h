@@ -13,6 +13,9 @@ namespace graftal {
 /// nobody writes would wait for ever.
 bool is_special_file(const std::string& path);
 
+/// The reason why nobody reads a special file: "not a regular file", or that it is a folder.
+std::string special_file_text(const std::string& path);
+
 /// Whether a path, there or not, leads into a folder, with all symbolic links resolved on both sides.
 bool lies_in(const std::string& path, const std::string& folder);
 

@@ -1,6 +1,8 @@
 #include "tests/golden/command_line.h"
 
 #include <filesystem>
+#include <set>
+#include <sstream>
 
 #include <gmock/gmock.h>
 
@@ -8,6 +10,7 @@ namespace graftal {
 namespace {
 
 using testing::AllOf;
+using testing::AnyOf;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -61,6 +64,22 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
          "--tile draws once, at its finest: leave out --progressive"},
         {"render a.inst --memory 2X", "--memory: '2X' is not"},
         {"render a.inst --memory 0", "--memory: '0' is not"},
+        {"render a.inst --memory 10", "--memory: '10' is 10 bytes: give a unit, such as 10M or 10G\n"},
+        {"studio --memory 1048575", "--memory: '1048575' is 1048575 bytes: give a unit, such as 1023K\n"},
+        {"export a.inst -o a.ply --limit 1", "--limit: '1' is 1 byte: give a unit, such as 1M or 1G\n"},
+        {"render a.inst --quality high", "--quality: 'high' is not draft, normal or best\n"},
+        {"animate a.inst --quality nromal",
+         "--quality: 'nromal' is not draft, normal or best (did you mean 'normal'?)\n"},
+        {"render a.inst --quality 2", "--quality: '2' is not draft, normal or best\n"},
+        {"render a.inst --samples 0", "--samples: '0' is not a whole number from 1 to 65536\n"},
+        {"render a.inst --noise 256", "--noise: '256' is not a number from 0 to 255\n"},
+        {"render a.inst --device first", "--device: 'first' is not a whole number, 0 or more\n"},
+        {"stats a.inst --steps infinite", "--steps: 'infinite' is for the model's file: write 'steps infinite'"},
+        {"render a.inst --width 300", "'render' has no option '--width' (width and height are one option, such "
+                                      "as '--size 640x480')\n"},
+        {"points a.inst --height=300", "'points' has no option '--height' (width and height are one option"},
+        {"render a.inst -w 300", "(width and height are one option"},
+        {"animate a.inst +W300 +H200", "'animate' has no option '+W300' (width and height are one option"},
         {"render a.inst --memory 99999999999999G", "is not a number of bytes"},
         {"render a.inst --error -1", "--error: '-1' is not"},
         {"render a.inst --error 1e-320", "--error: '1e-320' is not 0, or a number of pixels from 1e-100"},
@@ -75,8 +94,8 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"render a.inst --bits 12", "--bits: '12' is not 8 or 16"},
         {"render a.inst --threads 0", "--threads: '0' is not"},
         {"render a.inst --antialias 12", "--antialias: '12' is neither"},
-        {"render a.inst --engine luxury", "--engine: 'luxury' is not one of: auto, native, gpu, povray"},
-        {"animate a.inst --engine ''", "--engine: '' is not one of: auto, native, gpu, povray"},
+        {"render a.inst --engine luxury", "--engine: 'luxury' is not auto, native, gpu or povray"},
+        {"animate a.inst --engine ''", "--engine: '' is not auto, native, gpu or povray"},
         {"stats a.inst --engine native", "--engine"},
         {"render a.inst --engine povray --progressive",
          "graftal: --progressive needs '--engine native': POV-Ray shows"},
@@ -94,6 +113,9 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"render a.inst --engine native -o a.jpg", "'a.jpg': the name of a picture must end in .png or .exr"},
         {"render a.inst --camera location=1,2", "--camera: 'location=1,2' is not of the form location=X,Y,Z"},
         {"render a.inst --camera 'angle=180'", "--camera: angle must lie between 0 and 180 degrees"},
+        {"render a.inst --camera 'angle=30,location=1,2'",
+         "--camera: 'location=1,2' is not of the form location=X,Y,Z, without blanks\n"},
+        {"render a.inst --camera 'angle=180,location=1,2,3'", "--camera: angle must lie between 0 and 180"},
         {"render a.inst --camera 'zoom=2'", "--camera: 'zoom=2' is none of"},
         {"render a.inst --camera aperture=-1",
          "--camera: aperture must be 0, or a radius from 1e-100 to 1e100"},
@@ -117,7 +139,7 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"animate a.inst --turn 10..20", "--turn: '10..20' is not"},
         {"animate a.inst --fps 0", "--fps: '0' is not a number from 0.01 to 240"},
         {"animate a.inst --fps 60", "--fps: a GIF shows at most 50 frames per second"},
-        {"animate a.inst --ease fast", "--ease: 'fast' is neither linear nor smooth"},
+        {"animate a.inst --ease fast", "--ease: 'fast' is not linear or smooth"},
         {"animate a.inst -o a.mp4 --size 63x48", "a video needs an even width and height, such as 64x48"},
         {"animate a.inst -o a.jpg",
          "'a.jpg': the name of an animation must end in .gif, .png, .apng, .mp4, .webm or .usda"},
@@ -139,6 +161,70 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         EXPECT_EQ(result.out, "") << arguments;
     }
     EXPECT_EQ(files(), "");
+}
+
+/// Every option that has a value is asked about a word that none takes: no answer is a library's.
+TEST_F(CommandLine, OptionsRefuseWordsInPlainEnglish) {
+    std::set<std::string> asked;
+    for (const std::string command : {"render", "animate", "points", "collage", "fit", "compile", "export",
+                                      "stats", "print", "graph", "import", "compare", "format",
+                                      "farm plan", "farm submit"}) {
+        std::istringstream help(graftal(command + " --help").out);
+        for (std::string line; std::getline(help, line);) {
+            std::string name, value;
+            std::istringstream words(line);
+            words >> name >> value;
+            if (!name.starts_with("--") || !line.starts_with("  ") || !asked.insert(name + value).second) continue;
+            const bool chooses = value.find('|') != std::string::npos && value.find_first_of("[NDC") == std::string::npos;
+            const RunResult result = graftal(command + " a.inst " + name + " drfat");
+            EXPECT_THAT(result.err, Not(AnyOf(HasSubstr("FAILED"), HasSubstr("{"), HasSubstr("Could not"))))
+                << command << ' ' << name;
+            if (!chooses) continue;
+            EXPECT_EQ(result.status, 2) << command << ' ' << name;
+            EXPECT_THAT(result.err, AllOf(StartsWith("graftal: " + name + ": 'drfat' is "),
+                                          HasSubstr(" or " + value.substr(value.rfind('|') + 1))))
+                << command << ' ' << name;
+        }
+    }
+    EXPECT_GT(asked.size(), 60u);
+}
+
+TEST_F(CommandLine, SettingsOfACameraStandApartByBlanksOrCommas) {
+    write("a.inst", "object a { instance: sphere }\n");
+    const std::string look = "render a.inst --size 24x16 --quality draft -q ";
+    ASSERT_EQ(graftal(look + "--camera 'location=0,1,9 look_at=0,0,0 angle=30' -o a.png").status, 0);
+    for (const std::string words :
+         {"location=0,1,9,look_at=0,0,0,angle=30", "location=0,1,9, look_at=0,0,0, angle=30,"}) {
+        ASSERT_EQ(graftal(look + "--camera '" + words + "' -o b.png").status, 0) << words;
+        EXPECT_EQ(graftal("compare a.png b.png").status, 0) << words;
+    }
+    ASSERT_EQ(graftal(look + "--camera location=0,2,9,look_at=0,0,0,angle=30 -o b.png").status, 0);
+    EXPECT_EQ(graftal("compare a.png b.png").status, 1) << "the camera counts";
+}
+
+TEST_F(CommandLine, AFolderIsNoModel) {
+    std::filesystem::create_directory(path("models"));
+    for (const char* command : {"render models", "stats models/", "check models", "format models", "fit models",
+                                "compare models models", "import models"})
+        EXPECT_THAT(graftal(command).err, HasSubstr("a folder, not a file: name a file in it")) << command;
+}
+
+TEST_F(CommandLine, ModelsOfOtherProgramsAreNamed) {
+    write("a.txt.old", "a model\n");
+    const std::string hint = graftal("stats a.txt.old").err, known = graftal("import --help").out;
+    for (const std::string ending : {".cfdg", ".es", ".l", ".ifs", ".flame"}) {
+        EXPECT_THAT(hint, HasSubstr(ending)) << ending;
+        EXPECT_THAT(known, HasSubstr(ending)) << ending;
+        EXPECT_THAT(graftal("render --help").out, HasSubstr(ending)) << ending;
+    }
+    EXPECT_THAT(graftal("--help").out, HasSubstr("graftal import --help"));
+    EXPECT_THAT(graftal("render --help").out, HasSubstr("5, 9 or 600"));
+}
+
+TEST_F(CommandLine, CompilingNamesThePicturesBesideAScene) {
+    const RunResult result = graftal("compile " + pound_sign + " --steps 5 -o hash.pov");
+    EXPECT_THAT(result.err, HasSubstr("; 1 picture beside it: hash_P_1.png\n"));
+    EXPECT_EQ(files(), "hash.pov hash_P_1.png");
 }
 
 TEST_F(CommandLine, HelpGoesToStandardOutput) {

@@ -158,7 +158,7 @@ TEST_F(Export, WritesAModelThatWouldBeTooLargeCoarser) {
     // What no error mends is refused, with nothing left behind.
     write("m.rifs", model);
     std::filesystem::remove(path("a.usda"));
-    const RunResult refused = graftal("export m.rifs --limit 100 -o a.usda");
+    const RunResult refused = graftal("export m.rifs --limit 1K -o a.usda");
     EXPECT_EQ(refused.status, 1);
     EXPECT_THAT(refused.err, HasSubstr("--limit"));
     EXPECT_FALSE(exists("a.usda"));

@@ -24,7 +24,7 @@ TEST_F(CommandLine, PointsUsage) {
         {"points a.rifs --points 0", "--points: '0' is not a whole number from 1 to 1e15, such as 1e9"},
         {"points a.rifs --points 1.5", "--points: '1.5' is not"},
         {"points a.rifs --points 1e16", "--points: '1e16' is not"},
-        {"points a.rifs --color red", "--color: 'red' is neither tint nor map nor density"},
+        {"points a.rifs --color red", "--color: 'red' is not tint, map or density"},
         {"points a.rifs --exposure 0", "--exposure: '0' is not a number above 0"},
         {"points a.rifs --gamma nan", "--gamma: 'nan' is not a number above 0"},
         {"points a.rifs --palette red", "--palette: 'red' is not a palette (viridis, gold, "},

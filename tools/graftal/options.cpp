@@ -108,15 +108,9 @@ void add_animate(CLI::App& app, Options& options) {
     add_value(app, "--turn", "DEGREES",
               "Turn the camera around the model's vertical axis (default: 360 if nothing else moves)",
               "a number from -36000 to 36000", parse_turn, [&](double turn) { animation.turn_deg = turn; });
-    const auto ease = [&animation](const std::string& text) {
-        if (text != "linear" && text != "smooth")
-            throw CLI::ValidationError(fmt::format("--ease: '{}' is neither linear nor smooth", text));
-        animation.ease = text == "smooth" ? Ease::smooth : Ease::linear;
-    };
-    app.add_option_function<std::string>("--ease", ease,
-                                         "Move evenly, or start and end slowly (default linear)")
-        ->type_name("linear|smooth")
-        ->take_last();
+    add_choice<Ease>(app, "--ease", "Move evenly, or start and end slowly (default linear)",
+                     {{"linear", Ease::linear}, {"smooth", Ease::smooth}},
+                     [&animation](Ease ease) { animation.ease = ease; });
     add_value(
         app, "--shutter", "SHARE",
         "Motion blur: expose each frame for this share of its time, as 8, 16 or 32 moments by --quality "
@@ -216,13 +210,8 @@ void add_after(CLI::App& app, Options& options, const std::string& verb) {
 void add_print(CLI::App& app, Options& options) {
     add_model(app, options);
     add_after(app, options, "Print");
-    add_value(
-        app, "--as", "LANGUAGE", "Language of the text: inst (default), or rifs: maps and a control digraph",
-        "inst or rifs",
-        [](const std::string& text) {
-            return text == "inst" || text == "rifs" ? std::optional(text == "rifs") : std::nullopt;
-        },
-        [&](bool rifs) { options.as_rifs = rifs; });
+    add_choice<bool>(app, "--as", "Language of the text: inst (default), or rifs: maps and a control digraph",
+                     {{"inst", false}, {"rifs", true}}, [&](bool rifs) { options.as_rifs = rifs; });
     app.add_flag_callback(
         "--word", [&options] { options.render.compile.lower.in_place = LowerOptions::InPlace::word; },
         "Print the string that an L-system derives, in place of the graph");
@@ -442,6 +431,8 @@ ParsedCommandLine parse_command_line(std::vector<std::string> words, bool in_par
     bool help_passes = false;
     app.add_flag("--help-passes", help_passes, "List the passes of the compiler");
     app.footer(
+        "A model is a file .lsys, .rifs or .inst, or of another program: 'graftal import --help' lists "
+        "these.\n"
         "'graftal COMMAND --help' explains a command and shows examples. If you are new to graftal, start\n"
         "with docs/tutorial.md.\n"
         "Exit status: 0 success, 1 faulty model or result, 2 wrong command line, 3 faulty environment.");

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "runtime/render/frame_clock.h"
+
 namespace graftal {
 
 namespace {
@@ -48,6 +50,11 @@ void ProgressBar::show(const std::string& text) {
     std::fputs(("graftal: " + text + "\n").c_str(), stderr);
 }
 
+void ProgressBar::say_at_once(const std::string& text) {
+    told_ = Clock::now() - time_between_lines;
+    show(text);
+}
+
 void ProgressBar::show(const std::string& what, double fraction, const std::string& more) {
     if (!(fraction >= fraction_)) { // another task begins
         begun_ = Clock::now();
@@ -76,6 +83,23 @@ void ProgressBar::clear() {
     std::fputs("\r\033[K", stderr);
     std::fflush(stderr);
     shown_.clear();
+}
+
+CancelFlag ShownTime::flag() {
+    return CancelFlag(
+        [this] {
+            show();
+            return asked_.raised();
+        },
+        asked_.wake_descriptor());
+}
+
+void ShownTime::show() {
+    const auto now = static_cast<long>(watch_.seconds());
+    if (now <= shown_ || !mutex_.try_lock()) return;
+    const std::lock_guard lock(mutex_, std::adopt_lock);
+    shown_ = now;
+    bar_.show(fmt::format("{}, {}", what_, duration_text(static_cast<double>(now))));
 }
 
 } // namespace graftal

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <mutex>
 #include <string>
 
+#include "compiler/support/control.h"
 #include "runtime/render/render.h"
+#include "runtime/render/stopwatch.h"
 
 namespace graftal {
 
@@ -18,6 +22,8 @@ class ProgressBar {
 
     /// Names what is going on, without a measure of it.
     void show(const std::string& text);
+    /// Does the same, and writes a line without the ten seconds.
+    void say_at_once(const std::string& text);
     /// Shows a share, and the time that is left, by the time that it took to come so far.
     void show(const std::string& what, double fraction, const std::string& more = "");
     void show(const DrawProgress& progress);
@@ -33,6 +39,25 @@ class ProgressBar {
     Clock::time_point begun_; ///< the task that fraction_ is of, at begun_at_
     double fraction_ = 1, begun_at_ = 0;
     std::string shown_;
+};
+
+/// Whoever does long work asks whether it is to end: meanwhile this shows how long it has taken.
+class ShownTime {
+  public:
+    /// `what` is going on, until `asked` ends it. The bar must outlive this, and this all copies of flag().
+    ShownTime(ProgressBar& bar, std::string what, CancelFlag asked)
+        : bar_(bar), what_(std::move(what)), asked_(std::move(asked)) {}
+    CancelFlag flag();
+
+  private:
+    void show();
+
+    ProgressBar& bar_;
+    std::string what_;
+    CancelFlag asked_;
+    Stopwatch watch_;
+    std::mutex mutex_; ///< of the bar
+    std::atomic<long> shown_ = 0;
 };
 
 } // namespace graftal

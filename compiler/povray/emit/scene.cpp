@@ -51,11 +51,11 @@ struct Plane {
     const Placement* placement;
 };
 
-/// The pictures of an include file are named as it is: several of one model may lie side by side.
+/// The pictures of a scene are named as its file is: several of one model may lie side by side.
 std::string picture_stem(const PovrayOptions& options) {
     std::string_view name = options.file_name;
-    if (!options.include || name.empty()) return harmless(options.scene_name);
-    if (name.ends_with(".inc")) name.remove_suffix(4);
+    if (name.empty()) return harmless(options.scene_name);
+    if (name.ends_with(".inc") || name.ends_with(".pov")) name.remove_suffix(4);
     return harmless(name);
 }
 

@@ -146,7 +146,7 @@ TEST_F(FoundModelTest, HostileTargetsAreAnsweredOrRefused) {
     EXPECT_FALSE(find(picture(50, 50, [](int, int) { return false; }), 1));
     EXPECT_THAT(message_, HasSubstr("is empty: it has no pixel darker than 0.5"));
     EXPECT_FALSE(find(picture(50, 50, [](int x, int y) { return x == 7 && y == 9; }), 1));
-    EXPECT_THAT(message_, HasSubstr("has only 1 pixel: too few"));
+    EXPECT_THAT(message_, HasSubstr("only 1 of its 50x50 pixels is darker than 0.5"));
     EXPECT_FALSE(find(picture(1, 1, [](int, int) { return true; }), 1));
     EXPECT_FALSE(find(path("none.png"), 1));
     ASSERT_TRUE(write_text(path("bad.png"), "\x89PNG\r\n\x1a\nrubbish").ok());

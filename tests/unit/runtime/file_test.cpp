@@ -56,7 +56,7 @@ TEST_F(Files, ReadingSaysWhatWasTriedAndWhatTheSystemAnswered) {
     EXPECT_EQ(read_text(path("none.inst"), text).message(),
               "cannot open '" + path("none.inst") + "': No such file or directory");
     EXPECT_EQ(read_text(folder_.string(), text).message(),
-              "cannot read '" + folder_.string() + "': not a regular file");
+              "cannot read '" + folder_.string() + "': it is a folder, not a file: name a file in it");
 }
 
 TEST_F(Files, ReadingStopsAtTheLimit) {
@@ -74,7 +74,7 @@ TEST_F(Files, ReadingAPipeThatNobodyWritesDoesNotHang) {
     ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
     std::string text;
     EXPECT_EQ(read_text(path("pipe"), text).message(),
-              "cannot read '" + path("pipe") + "': not a regular file");
+              "cannot read '" + path("pipe") + "': it is not a regular file");
 }
 
 TEST_F(Files, APendingFileAppearsByCommitOnly) {

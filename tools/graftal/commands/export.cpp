@@ -43,7 +43,8 @@ int run_export(const Options& options) {
     Compilation compilation;
     CommandSession session(options, options.operands.front(), Keep::for_views);
     const Interruption interruption;
-    session.set_control({interruption.flag(), {}});
+    ShownTime time(bar, "exporting", interruption.flag());
+    session.set_control({time.flag(), {}});
     const std::optional<std::string> written = export_model(session, export_options(options), compilation);
     bar.clear();
     const int status = conclude(options, compilation, interruption.signal());

@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <filesystem>
-#include <mutex>
 #include <set>
 
 #include <fmt/format.h>
@@ -85,36 +83,6 @@ std::string refusal(const FarmOptions& farm, const Options& planned) {
                            *word);
     return {};
 }
-
-/// Whoever does long work asks whether it is to end: meanwhile this shows how long it has taken.
-class ShownTime {
-  public:
-    ShownTime(ProgressBar& bar, CancelFlag asked) : bar_(bar), asked_(std::move(asked)) {}
-    CancelFlag flag() {
-        return CancelFlag(
-            [this] {
-                show();
-                return asked_.raised();
-            },
-            asked_.wake_descriptor());
-    }
-
-  private:
-    void show() {
-        const auto now = static_cast<long>(watch_.seconds());
-        if (now <= shown_ || !mutex_.try_lock()) return;
-        const std::lock_guard lock(mutex_, std::adopt_lock);
-        shown_ = now;
-        bar_.show(
-            fmt::format("fitting the picture to the work, {}", duration_text(static_cast<double>(now))));
-    }
-
-    ProgressBar& bar_;
-    CancelFlag asked_;
-    Stopwatch watch_;
-    std::mutex mutex_; ///< of the bar
-    std::atomic<long> shown_ = 0;
-};
 
 class Planning {
   public:
@@ -245,7 +213,9 @@ class Planning {
         if (job_.kind == JobKind::tiles && !view.shaped) // then the size is known before all work
             if (const int status = divide(view.size); status != exit_done) return status;
         CommandSession session(planned, planned.operands.front());
-        ShownTime time(bar, cancel_);
+        constexpr const char* fitting = "fitting the picture to the work";
+        if (job_.kind == JobKind::tiles) bar.say_at_once(std::string(fitting) + "...");
+        ShownTime time(bar, fitting, cancel_);
         session.set_control({time.flag(), {}});
         Compilation compilation;
         RenderOptions render = planned.render;

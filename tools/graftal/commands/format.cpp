@@ -34,7 +34,9 @@ int format_one(const Options& options, const std::string& path) {
     if (!document.language())
         compilation.diagnostics
             .error({0, 0, 0}, "this file is in none of the languages that graftal lays out")
-            .with_hint("the names of models end in " + extensions(languages()));
+            .with_hint(fmt::format(
+                "the names of models end in {}; 'graftal import' translates those of other programs",
+                extensions(languages())));
     if (compilation.diagnostics.has_errors()) return conclude(options, compilation);
     const std::string laid_out = applied(text, format(document));
     if (path == "-" && !options.check) return print_output(laid_out);

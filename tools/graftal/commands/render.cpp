@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "compiler/detail/coarser.h"
 #include "compiler/povray/cut/compile.h"
@@ -70,23 +71,38 @@ int run_render(const Options& options) {
     return status;
 }
 
+namespace {
+
+/// "; 2 pictures beside it: fern_P_1.png, fern_P_2.png", or "".
+std::string beside_text(const std::vector<std::string>& pictures) {
+    constexpr std::size_t most_named = 3;
+    if (pictures.empty()) return {};
+    const std::size_t named = std::min(pictures.size(), most_named);
+    return fmt::format("; {} picture{} beside it: {}{}", pictures.size(), pictures.size() == 1 ? "" : "s",
+                       fmt::join(pictures.begin(), pictures.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+                       named < pictures.size() ? ", ..." : "");
+}
+
+} // namespace
+
 int run_compile(const Options& options) {
     Compilation compilation;
     CommandSession session(options, options.operands.front());
     const std::shared_ptr<const CompiledModel> model =
         compile_scene(session, options.render.compile, compilation, options.render.cut);
     const Interruption interruption;
+    std::vector<std::string> pictures;
     if (model) {
         const bool include = options.render.output.ends_with(".inc");
         compilation.status = options.render.output == "-"
                                  ? print_scene(*model, include, compilation.diagnostics, interruption.flag())
                                  : write_scene(*model, options.render.output,
                                                {.include = include, .identifier = options.identifier},
-                                               session.textures(), interruption.flag());
+                                               session.textures(), interruption.flag(), &pictures);
     }
     const int status = conclude(options, compilation, interruption.signal());
     if (status == exit_done && !options.quiet && options.render.output != "-")
-        say(fmt::format("{}: {}\n", options.render.output, cut_text(model->cut)));
+        say(fmt::format("{}: {}{}\n", options.render.output, cut_text(model->cut), beside_text(pictures)));
     return status;
 }
 

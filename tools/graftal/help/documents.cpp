@@ -84,9 +84,8 @@ Documents::Documents(CLI::App& app) : app_(app) {
         ->add_option("SHELL", shell_, fmt::format("The shell: {}", fmt::join(shells, ", ")))
         ->required()
         ->check([shells](const std::string& shell) {
-            return std::ranges::find(shells, shell) != shells.end()
-                       ? std::string()
-                       : fmt::format("SHELL: '{}' is none of {}", shell, fmt::join(shells, ", "));
+            return std::ranges::find(shells, shell) != shells.end() ? std::string()
+                                                                    : unknown_word("SHELL", shell, shells);
         })
         ->type_name("");
     app.add_subcommand("manual", "Print a page of the manual")

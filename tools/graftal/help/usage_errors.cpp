@@ -42,9 +42,20 @@ const CLI::Option* option_in(const std::string& message, const CLI::App& command
     return nullptr;
 }
 
+/// Whether the word gives a width or a height as other programs have them: --width, -w, +W640.
+bool gives_side(const std::string& word) {
+    const std::string name = word.substr(0, word.find('='));
+    if (name == "--width" || name == "--height") return true;
+    return name.size() > 1 && (name[0] == '+' || name[0] == '-') &&
+           std::string_view("wWhH").find(name[1]) != std::string_view::npos &&
+           name.find_first_not_of("0123456789", 2) == std::string::npos;
+}
+
 std::string unknown_option(const std::string& word, const CLI::App& command) {
     const std::string name = word.substr(0, word.find('='));
-    const std::string hint = did_you_mean(name, option_names(command));
+    const std::string hint = gives_side(word) && command.get_option_no_throw("--size")
+                                 ? "width and height are one option, such as '--size 640x480'"
+                                 : did_you_mean(name, option_names(command));
     return fmt::format("'{}' has no option '{}'{}", command.get_name(), name,
                        hint.empty() ? "" : fmt::format(" ({})", hint));
 }
@@ -52,7 +63,7 @@ std::string unknown_option(const std::string& word, const CLI::App& command) {
 std::string extra_words(const CLI::App& command) {
     const std::vector<std::string> words = command.remaining(true);
     const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) {
-        return word.size() > 1 && word.front() == '-';
+        return word.size() > 1 && (word.front() == '-' || gives_side(word));
     });
     if (option != words.end()) return unknown_option(*option, command);
     const std::string word = words.empty() ? "" : words.front();
@@ -64,6 +75,16 @@ std::string extra_words(const CLI::App& command) {
 
 std::string unknown_command(const std::string& word, const std::vector<std::string>& commands) {
     return fmt::format("there is no command '{}' ({})", word, choices(word, commands));
+}
+
+std::string unknown_word(const std::string& option, const std::string& word,
+                         const std::vector<std::string>& words) {
+    std::string list;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        list += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
+    const std::string hint = did_you_mean(word, words);
+    return fmt::format("{}: '{}' is not {}{}", option, word, list,
+                       hint.empty() ? "" : fmt::format(" ({})", hint));
 }
 
 std::string wrong_command(int argc, const char* const* argv, const std::vector<std::string>& commands) {

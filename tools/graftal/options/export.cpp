@@ -46,10 +46,9 @@ void add_export(CLI::App& app, Options& options) {
                    fmt::format("File to write, {}; the modules of an L-system as data: {}", export_endings(),
                                plant_endings()))
         ->type_name("FILE");
-    add_value(app, "--limit", "BYTES",
+    add_bytes(app, "--limit",
               "Largest file; suffixes K M G (default 1G). If the whole model takes more, graftal leaves out "
               "small parts until the file is no larger (by default 128M). With --error it refuses",
-              "a number of bytes such as 512M", parse_bytes,
               [&file](std::uint64_t bytes) { file.most_bytes = file.fitted_bytes = bytes; });
     add_value(app, "--unit", "LENGTH",
               fmt::format("What a unit of the model measures, such as 25mm, 1cm, 2m or 1in ({}; default: "

@@ -37,7 +37,7 @@ void add_plan(CLI::App& farm, Options& options) {
     FarmOptions& own = options.farm;
     CLI::App& app = add_action(farm, options, FarmAction::plan, "plan",
                                "Make the folder of a job: what is to be drawn, in tasks");
-    app.add_option("MODEL", options.operands, "Model file (.lsys, .rifs, .inst)")->type_name("");
+    app.add_option("MODEL", options.operands, model_file_help())->type_name("");
     app.add_option("-o,--output", own.folder, "Folder of the job to make")->required()->type_name("JOB");
     add_value(app, "--tiles", "WxH", "Draw one picture in tiles of this size", "a size such as 512x512",
               parse_size, [&own](ImageSize size) { own.tile = size; });

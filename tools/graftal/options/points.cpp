@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -39,12 +38,6 @@ void add_positive(CLI::App& app, const std::string& name, const std::string& hel
         value = *number;
     };
     app.add_option_function<std::string>(name, set, help)->type_name("X")->take_last();
-}
-
-/// The engine of points by this name; null: no such one.
-std::optional<const Engine*> points_engine(const std::string& name) {
-    if (name != auto_engine && name != native_engine.name && name != gpu_engine.name) return std::nullopt;
-    return find_engine(name);
 }
 
 /// Adds the options that make colours and light of the measure.
@@ -100,26 +93,16 @@ void add_points_options(CLI::App& app, Options& options) {
                                          "Number of points (default: 100 per pixel; for a cloud 1e6)")
         ->type_name("N")
         ->take_last();
-    add_value(app, "--engine", "auto|native|gpu",
-              "What makes the points: native, the processors; gpu, the graphics card (default auto: a card "
-              "if there is one)",
-              "auto, native or gpu", points_engine,
-              [&options](const Engine* engine) { options.engine = engine; });
+    add_engine(app, options,
+               "What makes the points: native, the processors; gpu, the graphics card (default auto: a card "
+               "if there is one)",
+               {auto_engine, native_engine.name, gpu_engine.name});
     add_device(app, options);
-    const auto colour = [&settings](const std::string& text) {
-        static const std::map<std::string, PointColour> colours = {
-            {"tint", PointColour::tint}, {"map", PointColour::map}, {"density", PointColour::density}};
-        const auto found = colours.find(text);
-        if (found == colours.end())
-            throw CLI::ValidationError(
-                fmt::format("--color: '{}' is neither tint nor map nor density", text));
-        settings.colour = found->second;
-    };
-    app.add_option_function<std::string>("--color", colour,
-                                         "Colour by the model's tints, by the last map, or by the density of "
-                                         "the points (default tint)")
-        ->type_name("tint|map|density")
-        ->take_last();
+    add_choice<PointColour>(
+        app, "--color",
+        "Colour by the model's tints, by the last map, or by the density of the points (default tint)",
+        {{"tint", PointColour::tint}, {"map", PointColour::map}, {"density", PointColour::density}},
+        [&settings](PointColour colour) { settings.colour = colour; });
     add_positive(app, "--exposure", "How clearly a few points show beside many (default 30)",
                  settings.tone.exposure);
     add_positive(app, "--gamma", "Above 1 lightens the thin parts, below 1 darkens them (default 1)",

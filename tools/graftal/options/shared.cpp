@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <vector>
 
+#include "compiler/import/importers.h"
 #include "compiler/passes/pipeline.h"
 #include "compiler/support/number_range.h"
 #include "compiler/support/printable.h"
+#include "runtime/fit/fit_picture.h"
 #include "runtime/plants/plant_light.h"
+#include "runtime/render/povray_engine.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/help/usage_errors.h"
 #include "tools/graftal/options/sweep_values.h"
@@ -45,6 +47,26 @@ void add_swept(CLI::App& app, Options& options, const std::string& name, const s
 
 } // namespace
 
+std::optional<std::uint64_t> sensible_bytes(const std::string& name, const std::string& text) {
+    constexpr std::uint64_t least_without_unit = 1u << 20;
+    const std::optional<std::uint64_t> bytes = parse_bytes(text);
+    const bool has_unit = text.find_first_not_of("0123456789") != std::string::npos;
+    if (!bytes || has_unit || *bytes >= least_without_unit) return bytes;
+    throw CLI::ValidationError(
+        fmt::format("{}: '{}' is {} byte{}: give a unit, such as {}", name, text, *bytes, *bytes == 1 ? "" : "s",
+                    *bytes < 1024 ? fmt::format("{0}M or {0}G", *bytes) : fmt::format("{}K", *bytes >> 10)));
+}
+
+std::string model_file_help(const std::string& more) {
+    std::vector<std::string> endings;
+    for (const Importer& importer : importers())
+        for (const std::string_view ending : importer.endings)
+            if (std::ranges::find(endings, ending) == endings.end()) endings.emplace_back(ending);
+    return fmt::format(
+        "Model file (.lsys, .rifs, .inst{}; of other programs .{}: see 'graftal import --help')", more,
+        fmt::join(endings, ", ."));
+}
+
 std::optional<std::string> pass_named(const std::string& text, bool all_allowed) {
     if (all_allowed && text == "all") return text;
     std::vector<std::string> names;
@@ -72,7 +94,13 @@ void add_common(CLI::App& app, Options& options) {
         "Depth: levels of recursion, or derivation steps of an L-system; 7.3 shows a growing plant between "
         "steps 7 and 8",
         "a number from 0 to 4000000000",
-        [](const std::string& text) { return parse_steps(text, most_steps); },
+        [](const std::string& text) {
+            if (text == "infinite")
+                throw CLI::ValidationError(
+                    "--steps: 'infinite' is for the model's file: write 'steps infinite' into its 'lsys' "
+                    "block; other models go on without end unless steps are given");
+            return parse_steps(text, most_steps);
+        },
         [](const std::string& text) { return parse_steps_sweep(text, most_steps); },
         [&](const StepsValue& steps) {
             compile.lower.steps.reset();
@@ -119,9 +147,8 @@ void add_common(CLI::App& app, Options& options) {
         [&](const std::string& root) { compile.lower.root = root; });
     app.add_flag("--exact", compile.lower.exact,
                  "Derive L-systems module by module, so that a random plant is one true random sample");
-    add_value(app, "--memory", "BYTES",
+    add_bytes(app, "--memory",
               "Memory that graftal may use, and POV-Ray after it; suffixes K M G (default 2G)",
-              "a number of bytes such as 512M", parse_bytes,
               [&](std::uint64_t bytes) { compile.detail.memory_bytes = bytes; });
     add_value(
         app, "--threads", "N", "Number of threads (default: one per processor)",
@@ -254,35 +281,46 @@ void add_irradiance(CLI::App& app, Options& options) {
         [&options](std::uint64_t samples) { options.render.samples = static_cast<int>(samples); });
 }
 
+namespace {
+
+double native_work(Quality quality) {
+    return PictureWishes().work(quality);
+}
+
+/// "5, 9 or 600"
+std::string by_each_quality(double (*work)(Quality)) {
+    return fmt::format("{:g}, {:g} or {:g}", work(Quality::draft), work(Quality::normal),
+                       work(Quality::best));
+}
+
+} // namespace
+
 void add_view(CLI::App& app, Options& options) {
     add_camera(app, options);
     add_error(app, options);
     StageOptions& compile = options.render.compile;
     add_work(
         app, options,
-        "Limit of the work for a picture, roughly in seconds of one processor; graftal draws coarser where "
-        "a picture would take more (default by --quality: 5, 12 or 600; with POV-Ray 20, 40 or 1200)");
+        fmt::format("Limit of the work for a picture, roughly in seconds of one processor; graftal draws "
+                    "coarser where a picture would take more (default by --quality: {}; with POV-Ray {})",
+                    by_each_quality(native_work), by_each_quality(povray_seconds)));
     app.add_flag("--visible-only", compile.detail.visible_only,
                  "Leave out parts that the camera does not see, and their shadows too");
-    static const std::map<std::string, Quality> qualities = {
-        {"draft", Quality::draft}, {"normal", Quality::normal}, {"best", Quality::best}};
     add_plain_light(app, options);
-    app.add_option(
-           "--quality", options.render.compile.view.quality,
-           "How finely graftal samples the picture, and how long that may take: see --work and --noise "
-           "(default normal)")
-        ->transform(CLI::CheckedTransformer(qualities).description(""))
-        ->type_name("draft|normal|best")
-        ->take_last();
+    add_choice<Quality>(
+        app, "--quality",
+        "How finely graftal samples the picture, and how long that may take: see --work and --noise "
+        "(default normal)",
+        {{"draft", Quality::draft}, {"normal", Quality::normal}, {"best", Quality::best}},
+        [&options](Quality quality) { options.render.compile.view.quality = quality; });
     app.add_flag("--flatten", options.render.cut.flatten,
                  "Write every part in its place, without sharing (for comparison)");
 }
 
 void add_model(CLI::App& app, Options& options) {
     const auto set = [&options](const std::string& model) { options.operands = {model}; };
-    const std::string help = app.get_name() == "render"
-                                 ? "Model file (.lsys, .rifs, .inst, or .pifs of 'graftal fit --blocks')"
-                                 : "Model file (.lsys, .rifs, .inst)";
+    const std::string help =
+        model_file_help(app.get_name() == "render" ? ", or .pifs of 'graftal fit --blocks'" : "");
     app.add_option_function<std::string>("MODEL", set,
                                          can_sweep(app) ? help : help + ", or - for standard input")
         ->required()
@@ -293,10 +331,10 @@ namespace {
 
 constexpr int most_samples_a_pixel = 65'536;
 
-std::string engine_names(std::string_view between) {
-    std::string names(auto_engine);
+std::vector<std::string_view> engine_names() {
+    std::vector<std::string_view> names = {auto_engine};
     for (const Engine& engine : engines())
-        names += fmt::format("{}{}", between, engine.name);
+        names.push_back(engine.name);
     return names;
 }
 
@@ -313,51 +351,49 @@ std::string engines_text() {
 } // namespace
 
 void add_bits(CLI::App& app, Options& options) {
-    const auto read = [](const std::string& text) {
-        return text == "8"    ? std::optional(SampleFormat::srgb8)
-               : text == "16" ? std::optional(SampleFormat::srgb16)
-                              : std::nullopt;
-    };
-    add_value(app, "--bits", "8|16", "Bits of each colour of a PNG (default 8)", "8 or 16", read,
-              [&options](SampleFormat format) { options.render.format = format; });
+    add_choice<SampleFormat>(app, "--bits", "Bits of each colour of a PNG (default 8)",
+                             {{"8", SampleFormat::srgb8}, {"16", SampleFormat::srgb16}},
+                             [&options](SampleFormat format) { options.render.format = format; });
+}
+
+void add_engine(CLI::App& app, Options& options, const std::string& help,
+                const std::vector<std::string_view>& names) {
+    Choices<std::string_view> choices;
+    for (const std::string_view name : names)
+        choices.emplace_back(name, name);
+    add_choice(app, "--engine", help, choices, // which card there is, is asked only then
+               [&options](std::string_view name) { options.engine = find_engine(name); });
 }
 
 void add_device(CLI::App& app, Options& options) {
-    app.add_option("--device", options.render.device,
-                   "Graphics card of '--engine gpu', by its number in 'graftal version --json' (default: the "
-                   "first card)")
-        ->type_name("N")
-        ->take_last();
+    add_value(
+        app, "--device", "N",
+        "Graphics card of '--engine gpu', by its number in 'graftal version --json' (default: the first "
+        "card)",
+        "a whole number, 0 or more", [](const std::string& text) { return parse_whole(text, 0, UINT32_MAX); },
+        [&options](std::uint64_t device) { options.render.device = device; });
 }
 
 void add_drawing(CLI::App& app, Options& options) {
-    const auto engine = [&options](const std::string& text) {
-        options.engine = find_engine(text);
-        if (!options.engine)
-            throw CLI::ValidationError(
-                fmt::format("--engine: '{}' is not one of: {}", text, engine_names(", ")));
-    };
-    app.add_option_function<std::string>("--engine", engine, engines_text())
-        ->type_name(engine_names("|"))
-        ->take_last();
+    add_engine(app, options, engines_text(), engine_names());
     add_device(app, options);
-    app.add_option("--samples", options.render.samples,
-                   "Samples per pixel under soft light; overrides --quality")
-        ->check(CLI::Range(1, most_samples_a_pixel).description(""))
-        ->type_name("N")
-        ->take_last();
-    app.add_option("--noise", options.render.noise_255,
-                   "Under soft light, take no more samples where the error is below N of 255 levels")
-        ->check(CLI::Range(0.0, 255.0).description(""))
-        ->type_name("N")
-        ->take_last();
     add_value(
-        app, "--denoise", "on|off", "Take noise out of soft light (default: on, except for '--quality best')",
-        "on or off",
+        app, "--samples", "N", "Samples per pixel under soft light; overrides --quality",
+        fmt::format("a whole number from 1 to {}", most_samples_a_pixel),
+        [](const std::string& text) { return parse_whole(text, 1, most_samples_a_pixel); },
+        [&options](std::uint64_t samples) { options.render.samples = static_cast<int>(samples); });
+    add_value(
+        app, "--noise", "N",
+        "Under soft light, take no more samples where the error is below N of 255 levels",
+        "a number from 0 to 255",
         [](const std::string& text) {
-            return text == "on" ? std::optional(true) : text == "off" ? std::optional(false) : std::nullopt;
+            const std::optional<double> noise = parse_at_least(text, 0);
+            return noise && *noise <= 255 ? noise : std::nullopt;
         },
-        [&options](bool on) { options.render.denoise = on; });
+        [&options](double noise) { options.render.noise_255 = noise; });
+    add_choice<bool>(app, "--denoise",
+                     "Take noise out of soft light (default: on, except for '--quality best')",
+                     {{"on", true}, {"off", false}}, [&options](bool on) { options.render.denoise = on; });
     app.add_flag("--test-listed-lights", options.render.listed_lights,
                  "Draw soft light from the list of lights that POV-Ray gets");
     app.add_flag("--unconfined", options.render.unconfined,

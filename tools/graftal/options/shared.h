@@ -1,15 +1,26 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "tools/graftal/help/usage_errors.h"
 #include "tools/graftal/options.h"
 
 namespace graftal {
+
+/// The bytes of the option `name`; nothing for what is no number of them. A usage error where the unit is
+/// forgotten.
+std::optional<std::uint64_t> sensible_bytes(const std::string& name, const std::string& text);
+
+/// "Model file (.lsys, .rifs, .inst, ...)", for help.
+std::string model_file_help(const std::string& more = "");
 
 /// Adds an option whose text `read` turns into a value; what it refuses is a usage error saying `expected`.
 template<typename Read, typename Store>
@@ -21,6 +32,34 @@ CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string
         store(std::move(*value));
     };
     return app.add_option_function<std::string>(name, apply, help)->type_name(value_name)->take_last();
+}
+
+/// Words of an option, each with its value.
+template<typename Value> using Choices = std::vector<std::pair<std::string, Value>>;
+
+/// Adds an option that takes one of a few words; another is a usage error that lists them.
+template<typename Value, typename Store>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::string& help,
+                        const Choices<Value>& choices, Store store) {
+    std::vector<std::string> words;
+    for (const auto& [word, value] : choices)
+        words.push_back(word);
+    const auto apply = [=](const std::string& text) {
+        const auto found = std::ranges::find(words, text);
+        if (found == words.end()) throw CLI::ValidationError(unknown_word(name, text, words));
+        store(choices[static_cast<std::size_t>(found - words.begin())].second);
+    };
+    return app.add_option_function<std::string>(name, apply, help)
+        ->type_name(fmt::format("{}", fmt::join(words, "|")))
+        ->take_last();
+}
+
+/// Adds an option for a number of bytes, which `store` gets.
+template<typename Store>
+void add_bytes(CLI::App& app, const std::string& name, const std::string& help, Store store) {
+    add_value(
+        app, name, "BYTES", help, "a number of bytes such as 512M",
+        [name](const std::string& text) { return sensible_bytes(name, text); }, store);
 }
 
 /// A pass of the pipeline, or "all" if that is allowed; else a usage error.
@@ -48,6 +87,9 @@ void add_view(CLI::App& app, Options& options);
 void add_irradiance(CLI::App& app, Options& options);
 /// `--bits`, of a PNG for people.
 void add_bits(CLI::App& app, Options& options);
+/// `--engine`, one of these names.
+void add_engine(CLI::App& app, Options& options, const std::string& help,
+                const std::vector<std::string_view>& names);
 /// `--device`, of a graphics card.
 void add_device(CLI::App& app, Options& options);
 /// Options of commands that make pictures.

@@ -8,7 +8,7 @@ namespace graftal {
 void add_studio(CLI::App& app, Options& options) {
     app.add_option_function<std::string>(
            "MODEL", [&options](const std::string& model) { options.operands = {model}; },
-           "Model file (.lsys, .rifs, .inst); without one, the studio opens an example")
+           model_file_help() + "; without one, the studio opens an example")
         ->type_name("");
     app.add_flag_callback(
         "--no-browser", [&options] { options.studio.browser = false; },
@@ -22,8 +22,7 @@ void add_studio(CLI::App& app, Options& options) {
            "IP address on which other machines reach the page; whoever has the page's whole address can "
            "use it (default 127.0.0.1: this machine only)")
         ->type_name("ADDRESS");
-    add_value(app, "--memory", "BYTES", "Memory that all pages may use together; suffixes K M G (default 4G)",
-              "a number of bytes such as 512M", parse_bytes,
+    add_bytes(app, "--memory", "Memory that all pages may use together; suffixes K M G (default 4G)",
               [&](std::uint64_t bytes) { options.studio.memory_bytes = bytes; });
     app.add_flag("-q,--quiet", options.quiet, "Print only the address, errors and warnings");
     app.footer(

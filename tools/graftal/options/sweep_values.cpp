@@ -165,7 +165,7 @@ std::optional<Sweep> parse_zoom_sweep(std::string_view text) {
 }
 
 std::string parse_camera_sweeps(std::string_view text, CameraOverride& camera, std::vector<Sweep>& sweeps) {
-    while (const std::optional<std::string_view> taken = take_word(text)) {
+    while (const std::optional<std::string_view> taken = take_setting(text)) {
         const std::string_view word = *taken;
         const std::string name(word.substr(0, word.find('=')));
         const auto range = parse_range(word);

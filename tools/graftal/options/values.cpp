@@ -131,7 +131,7 @@ std::string set_camera_word(std::string_view word, CameraOverride& camera) {
     for (const auto& [vector_name, vector] : vectors) {
         if (name != vector_name) continue;
         *vector = parse_vector(text);
-        if (!*vector) return fmt::format("'{}' is not of the form {}=X,Y,Z", word, name);
+        if (!*vector) return fmt::format("'{}' is not of the form {}=X,Y,Z, without blanks", word, name);
         const bool fits =
             vector == &camera.up ? **vector == Vec3(0.0) || is_direction(**vector) : is_place(**vector);
         return fits ? "" : fmt::format("'{}': {}", word, range_hint);
@@ -158,18 +158,31 @@ std::string set_camera_word(std::string_view word, CameraOverride& camera) {
 
 } // namespace
 
-std::optional<std::string_view> take_word(std::string_view& text) {
+namespace {
+
+bool begins_name(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+} // namespace
+
+std::optional<std::string_view> take_setting(std::string_view& text) {
     constexpr std::string_view blanks = " \t\n";
     const std::size_t begin = text.find_first_not_of(blanks);
     if (begin == std::string_view::npos) return std::nullopt;
     text.remove_prefix(begin);
-    const std::string_view word = text.substr(0, text.find_first_of(blanks));
+    std::string_view word = text.substr(0, text.find_first_of(blanks));
+    for (std::size_t comma = word.find(','); comma < word.size(); comma = word.find(',', comma + 1))
+        if (comma + 1 == word.size() || begins_name(word[comma + 1])) {
+            text.remove_prefix(comma + 1);
+            return word.substr(0, comma);
+        }
     text.remove_prefix(word.size());
     return word;
 }
 
 std::string parse_camera(std::string_view text, CameraOverride& camera) {
-    while (const std::optional<std::string_view> word = take_word(text)) {
+    while (const std::optional<std::string_view> word = take_setting(text)) {
         const std::string problem = set_camera_word(*word, camera);
         if (!problem.empty()) return problem;
     }

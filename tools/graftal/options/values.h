@@ -57,8 +57,9 @@ inline constexpr const char* zoom_values = "a number of at least 1e-100, such as
 /// "NAME=VALUE" with a finite number.
 std::optional<std::pair<std::string, double>> parse_setting(std::string_view text);
 
-/// The first word of the text, which loses it; nothing if only blanks are left.
-std::optional<std::string_view> take_word(std::string_view& text);
+/// The first setting of the text, which loses it; nothing if only blanks are left. Settings stand apart by
+/// blanks, or by a comma before a name.
+std::optional<std::string_view> take_setting(std::string_view& text);
 
 /// Adds words such as "location=1,2,3 look_at=0,0,0 up=0,1,0 angle=40 orthographic width=3" to the camera;
 /// returns what is wrong with them, or "".

@@ -262,6 +262,9 @@ TEST(EmitPovray, LargePalettesArePicturesBesideTheScene) {
     scene.options = {.scene_name = "a.rifs", .include = true, .file_name = "far.inc"};
     scene.text();
     EXPECT_EQ(scene.pictures[0].file_name, "far_P_1.png") << "beside others of the same model";
+    scene.options = {.scene_name = "a.rifs", .file_name = "near.pov"};
+    scene.text();
+    EXPECT_EQ(scene.pictures[0].file_name, "near_P_1.png");
 }
 
 TEST(EmitPovray, TextOfTheModelNeverBecomesSdl) {

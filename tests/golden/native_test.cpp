@@ -77,13 +77,14 @@ TEST_F(Native, SaysThatTheCameraLooksPastTheModel) {
     const struct {
         std::string text, options;
         bool warns;
-    } cases[] = {{away + ball, "", true},
-                 {away + ball, " --camera 'look_at=0,0,0'", false},
-                 {ball, " --camera 'location=0,0,5 look_at=9,0,5'", true},
-                 {"camera { location: 0, 0, 5  look_at: 0, 0, 10  width: 4 }\n" + ball, "", true},
-                 {away + "ground { }\n" + ball, "", false},
-                 {away + "sky { }\n" + ball, "", false},
-                 {away + "object a { sphere plane translate: 0, -1, 0 }\n", "", false}};
+    } cases[] = {
+        {away + ball, "", true},
+        {away + ball, " --camera 'look_at=0,0,0'", false},
+        {ball, " --camera 'location=0,0,5 look_at=9,0,5'", true},
+        {"camera { location: 0, 0, 5  look_at: 0, 0, 10  orthographic  width: 4 }\n" + ball, "", true},
+        {away + "ground { }\n" + ball, "", false},
+        {away + "sky { zenith: 0.3, 0.5, 0.9 }\n" + ball, "", false},
+        {away + "object a {\n sphere\n plane translate: 0, -1, 0\n}\n", "", false}};
     for (const auto& [text, options, warns] : cases) {
         write("m.inst", text);
         const RunResult result = render("-q m.inst -o m.png" + options + small);

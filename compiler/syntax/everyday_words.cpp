@@ -76,7 +76,7 @@ constexpr EverydayWord lines[] = {
     {"colour", "'tint: r, g, b, alpha' or 'material: NAME'"},
 };
 
-/// What POV-Ray writes before braces, by the sizes that ours have.
+/// A word that POV-Ray writes before braces, and the size that ours has.
 struct BracedWord {
     std::string_view word;
     std::string_view ours;

@@ -89,9 +89,10 @@ void note_shadowless(const CutGraph& cut, const Graph& graph, Diagnostics& diagn
             cut.nodes, [&](const CutNode& user) { return std::ranges::any_of(user.edges, widens_proxy); }))
         return;
     diagnostics
-        .note(graph.objects[graph.root].span, "a set in this model has no area (its dimension is at most 2): "
-                                              "graftal draws its smallest parts one pixel wide")
-        .with_hint("name a shape for these parts, and the size in pixels up to which they have it: 'terminal "
+        .note(graph.objects[graph.root].span,
+              "this figure is a curve or dust without thickness: graftal draws its "
+              "smallest parts one pixel wide, so that they show")
+        .with_hint("for thicker parts, name a shape and a size in pixels up to which it is drawn: 'terminal "
                    "sphere below 4'");
 }
 

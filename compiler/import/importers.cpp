@@ -19,9 +19,12 @@
 #include "compiler/import/lparser/importer.h"
 #include "compiler/import/lpy/importer.h"
 #include "compiler/import/unread.h"
+#include "compiler/languages/languages.h"
 #include "compiler/support/path_text.h"
 #include "compiler/support/small_letters.h"
 #include "compiler/support/text_encoding.h"
+#include "compiler/syntax/lexer.h"
+#include "compiler/syntax/scene_statements.h"
 
 namespace graftal {
 
@@ -83,6 +86,38 @@ std::vector<std::string> names_of(const std::vector<ForeignModel>& models) {
     for (const ForeignModel& model : models)
         names.push_back(model.name);
     return names;
+}
+
+/// Whether the first word begins a statement in one of our languages, or nearly one of their own.
+bool begins_as_ours(FileId file, const SourceMap& sources) {
+    constexpr std::size_t glimpse = 4096;
+    Diagnostics ignored; // the front-end reads the text again
+    const std::size_t size = std::min(sources.text(file).size(), glimpse);
+    const std::vector<Token> tokens =
+        lex_range(sources, {file, 0, static_cast<std::uint32_t>(size)}, ignored);
+    if (tokens[0].kind == TokenKind::end) return true; // a comment, as far as one sees
+    const auto has_first = [&](const auto& words) {
+        return std::ranges::find(words, tokens[0].text) != std::end(words);
+    };
+    return has_first(scene_keywords()) || std::ranges::any_of(languages(), [&](const Language& ours) {
+               return has_first(ours.keywords) || has_first(ours.inner_keywords) ||
+                      !closest_name(tokens[0].text, {ours.keywords.begin(), ours.keywords.end()}).empty();
+           });
+}
+
+/// Whether a text whose file has another name is foreign, as an error then says.
+bool is_misnamed(FileId file, const SourceMap& sources, Diagnostics& diagnostics) {
+    const std::string_view text = sources.text(file);
+    if (is_binary(text) || begins_as_ours(file, sources)) return false;
+    const auto row =
+        std::ranges::find_if(importers(), [&](const Importer& known) { return known.recognises(text); });
+    if (row == importers().end()) return false;
+    diagnostics
+        .error(Span(),
+               fmt::format("'{}' is no model of graftal: it looks like {}", sources.name(file), row->format))
+        .with_hint(fmt::format("name the file with the ending .{}, and graftal reads it",
+                               row->endings.empty() ? open_endings.back() : row->endings.front()));
+    return true;
 }
 
 } // namespace
@@ -193,7 +228,8 @@ std::optional<ForeignModel> find_model(const Importer& importer, const ForeignFi
 
 std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& sources,
                                Diagnostics& diagnostics, const TranslateOptions& options, WorkMeter* meter) {
-    if (!is_foreign(sources.name(file))) return file;
+    if (!is_foreign(sources.name(file)))
+        return is_misnamed(file, sources, diagnostics) ? std::nullopt : std::optional(file);
     const ForeignFile foreign = foreign_file(file, sources, diagnostics, options, meter);
     const Importer* const importer = importer_of(foreign);
     if (!importer) return std::nullopt;

@@ -267,8 +267,13 @@ void InstLowerer::choose_root() {
     if (rendered.size() == 1) graph_.root = rendered.front()->id;
     if (rendered.size() > 1) add_scene(rendered);
     if (!rendered.empty() || !module_.complete || failed()) return;
-    const Span place = module_.definitions.empty() ? module_.end : module_.definitions.back().span;
-    diagnostics_.error(place, "the model draws nothing: every object is 'canonical'")
+    if (module_.definitions.empty()) {
+        diagnostics_.error(module_.end, "this file has no object")
+            .with_hint("write one, such as 'object ball { sphere }'");
+        return;
+    }
+    diagnostics_
+        .error(module_.definitions.back().span, "the model draws nothing: every object is 'canonical'")
         .with_hint("write 'object NAME { ... }' for the object that the picture shows");
 }
 

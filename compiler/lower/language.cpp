@@ -60,14 +60,34 @@ std::vector<std::string> first_words(const Language& language) {
     return words;
 }
 
+constexpr std::size_t glimpse = 4096;
+
+/// The part of a text that is enough for its first words, as a rule.
+Span beginning(FileId file, const SourceMap& sources) {
+    return {file, 0, static_cast<std::uint32_t>(std::min(sources.text(file).size(), glimpse))};
+}
+
+/// How to name a file that begins as no text of its language does, but as one of another; "" for other files.
+std::string other_language_hint(FileId file, const Language& own, const Lowering& lowering) {
+    Diagnostics ignored; // the front-end reads the text again
+    const std::string_view first =
+        lex_range(lowering.sources, beginning(file, lowering.sources), ignored)[0].text;
+    const std::vector<std::string> words = first_words(own);
+    if (std::ranges::find(words, first) != words.end() || contains(own.inner_keywords, first) ||
+        !closest_name(first, words).empty())
+        return {};
+    for (const Language& other : lowering.languages)
+        if (contains(other.inner_keywords, first))
+            return fmt::format("models with '{}' are files whose names end in .{}", first, other.extension);
+    return {};
+}
+
 /// Whether the first statement is one, or a misspelt one. Who names another file by mistake, or by the
 /// mistake of a stranger's link, must not see it printed line by line as bad syntax.
 bool looks_like_model(FileId file, const SourceMap& sources, std::span<const Language> languages) {
-    constexpr std::size_t glimpse = 4096;
     Diagnostics ignored; // the front-end reads the text again
     const std::size_t size = sources.text(file).size();
-    const Span beginning{file, 0, static_cast<std::uint32_t>(std::min(size, glimpse))};
-    std::vector<Token> tokens = lex_range(sources, beginning, ignored);
+    std::vector<Token> tokens = lex_range(sources, beginning(file, sources), ignored);
     if (tokens.size() < 3 && size > glimpse) tokens = lex(sources, file, ignored);
     if (tokens.size() == 1) return true; // empty, as the front-end will say
     const Token& first = tokens[0];
@@ -136,10 +156,11 @@ std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering)
                           extensions(lowering.languages)));
         return std::nullopt;
     }
-    if (!looks_like_model(file, lowering.sources, lowering.languages)) {
+    const std::string other = other_language_hint(file, *language, lowering);
+    if (!other.empty() || !looks_like_model(file, lowering.sources, lowering.languages)) {
         lowering.diagnostics
             .error(place, fmt::format("'{}' is no model: its first word begins no statement", name))
-            .with_hint(choices("", first_words(*language)));
+            .with_hint(other.empty() ? choices("", first_words(*language)) : other);
         return std::nullopt;
     }
     lowering.loading.back().failures_before = lowering.failures();

@@ -40,7 +40,9 @@ class LsysLowering {
     std::optional<Graph> run() && {
         if (tree_.blocks.empty() && !failed())
             diagnostics_.error({tree_.file, 0, 0}, "this file has no 'lsys' block")
-                .with_hint("write lsys NAME { axiom F  F -> F[+F]F }, with each statement on its own line");
+                .with_hint(
+                    "write one, with each statement on its own line: 'lsys bush {', 'angle 25', 'steps 4', "
+                    "'axiom F', 'F -> F[+F]F', '}'");
         lets_ = evaluate_lets(tree_.statements, {}, lowering_, given_inner());
         inner_parameters(tree_.statements, lets_, diagnostics_); // for its checks
         lower_settings(tree_.statements, lets_, graph_, lowering_);
@@ -333,11 +335,14 @@ class LsysLowering {
         else
             steps = grammar.steps;
         if (!steps) steps = graph_.settings.steps;
-        if (!steps)
-            diagnostics_.error(span, fmt::format("'lsys {}' has no number of steps", block.source->name.text))
-                .with_hint(is_root(block) ? "add 'steps 5' to it, or give '--steps 5'"
-                                          : "add 'steps 5' to it");
-        else if (*steps > max_derivation_steps)
+        if (!steps) {
+            Diagnostic& error = diagnostics_.error(
+                span, fmt::format("'lsys {}' has no number of steps", block.source->name.text));
+            error.with_hint(is_root(block) ? "add 'steps 5' to it, or give '--steps 5'"
+                                           : "add 'steps 5' to it");
+            if (const std::optional<LsysValue>& step = block.source->step)
+                error.with_note(step->span, "'step' is the length of F: is 'steps' meant?");
+        } else if (*steps > max_derivation_steps)
             diagnostics_.error(span, fmt::format("a derivation has at most {} steps", max_derivation_steps));
         return steps && *steps <= max_derivation_steps;
     }

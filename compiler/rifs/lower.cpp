@@ -58,7 +58,8 @@ class RifsLowering {
         }
         if (tree_.blocks.empty() && !failed())
             diagnostics_.error({tree_.file, 0, 0}, "this file has no 'rifs' block")
-                .with_hint("rifs NAME { map NAME { scale 1/2 } ... }");
+                .with_hint("write one, such as 'rifs dust { map a { scale: 1/3 } map b { scale: 1/3  "
+                           "translate: 2/3, 0, 0 } }'");
         lets_ = lower_lets(tree_.statements, lowering_);
         inner_parameters(tree_.statements, lets_, diagnostics_); // for its checks
         lower_settings(tree_.statements, lets_, graph_, lowering_);

@@ -11,6 +11,7 @@
 #include "compiler/analysis/model_range.h"
 #include "compiler/graph/verify.h"
 #include "compiler/languages/lower.h"
+#include "compiler/scene/sight.h"
 #include "compiler/session/analyse_shapes.h"
 #include "compiler/session/frame_model.h"
 #include "compiler/session/shared_framing.h"
@@ -234,6 +235,27 @@ void warn_of_no_lens(const ViewedModel& viewed, const ViewOptions& options, Diag
             "a lens needs 'aperture', a camera in perspective that has the focus before it, and no --zoom");
 }
 
+/// Where the camera sees neither the model, by its box, nor anything around it.
+void warn_of_no_sight(const ViewedModel& viewed, const ViewOptions& options, Diagnostics& diagnostics) {
+    const Graph& graph = viewed.model->graph;
+    const ObjectBounds& bounds = viewed.model->bounds[graph.root];
+    const View& view = viewed.view;
+    if (options.zoom.active() || bounds.unbounded || bounds.box.empty() || view.ground || view.haze ||
+        view.shows_sky_light || view.lens.radius > 0 || !misses(view.camera, bounds.box, view.size))
+        return;
+    std::string middle;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (axis > 0) middle += ", ";
+        append_number(middle, bounds.box.centre()[axis], 4);
+    }
+    diagnostics
+        .warning(graph.objects[graph.root].span,
+                 "the camera sees no part of this model: it looks away from it, or past it")
+        .with_hint(fmt::format("leave out the camera to see all of it, or let it look at its middle: "
+                               "'look_at: {}'",
+                               middle));
+}
+
 } // namespace
 
 std::optional<ViewedModel> look_at(std::shared_ptr<const AnalysedModel> model, std::optional<unsigned> steps,
@@ -246,6 +268,7 @@ std::optional<ViewedModel> look_at(std::shared_ptr<const AnalysedModel> model, s
     if (!viewed) return std::nullopt;
     viewed->view.quality = options.quality;
     warn_of_no_lens(*viewed, options, diagnostics);
+    warn_of_no_sight(*viewed, options, diagnostics);
     if (options.transparent) clear_background(viewed->view);
     return viewed;
 }

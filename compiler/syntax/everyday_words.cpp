@@ -1,6 +1,7 @@
 #include "compiler/syntax/everyday_words.h"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 
 #include <fmt/format.h>
@@ -75,6 +76,26 @@ constexpr EverydayWord lines[] = {
     {"colour", "'tint: r, g, b, alpha' or 'material: NAME'"},
 };
 
+/// A word that POV-Ray writes before braces, and the size that ours has.
+struct BracedWord {
+    std::string_view word;
+    std::string_view ours;
+    std::string_view size; ///< "" of combinations
+};
+
+constexpr BracedWord braced_words[] = {
+    {"sphere", "sphere", "radius 1 about the origin"},
+    {"cube", "cube", "edges from -1 to 1 on each axis"},
+    {"box", "cube", "edges from -1 to 1 on each axis"},
+    {"cylinder", "cylinder", "radius 1 about the y axis, from y = 0 to y = 1"},
+    {"cone", "cone", "radius 1 at y = 0, and its tip at y = 1"},
+    {"torus", "torus", "radii 1 and 1/4 about the y axis"},
+    {"union", "union", ""},
+    {"merge", "union", ""},
+    {"intersection", "intersection", ""},
+    {"difference", "difference", ""},
+};
+
 std::string hint_of(std::span<const EverydayWord> words, std::string_view word) {
     const auto found = std::ranges::find(words, in_small_letters(word), &EverydayWord::word);
     return found == words.end() ? std::string() : fmt::format("write {}", found->how);
@@ -88,6 +109,22 @@ std::string shape_word_hint(std::string_view word) {
 
 std::string line_word_hint(std::string_view word) {
     return hint_of(lines, word);
+}
+
+bool is_braced_word(std::string_view word) {
+    return std::ranges::find(braced_words, word, &BracedWord::word) != std::end(braced_words);
+}
+
+std::string braced_word_hint(std::string_view word, std::string_view around) {
+    const auto known = std::ranges::find(braced_words, word, &BracedWord::word);
+    const BracedWord braced = known == std::end(braced_words) ? BracedWord{word, word, ""} : *known;
+    const bool combines = known != std::end(braced_words) && braced.size.empty();
+    const std::string object = combines ? fmt::format("{}: sphere, cube", braced.ours)
+                                        : fmt::format("{}  scale: 1  translate: 0, 0, 0", braced.ours);
+    std::string text(around);
+    text.replace(text.find("..."), 3, object);
+    if (braced.size.empty()) return fmt::format("write '{}'", text);
+    return fmt::format("'{}' has {}: write '{}'", braced.ours, braced.size, text);
 }
 
 } // namespace graftal

@@ -9,5 +9,10 @@ namespace graftal {
 std::string shape_word_hint(std::string_view word);
 /// "write 'translate: 1, 0, 0'" for `move`, a word for a line of an instance or a map; likewise.
 std::string line_word_hint(std::string_view word);
+/// Whether the word is a shape or a combination that POV-Ray writes before braces: `sphere { <0, 0, 0>, 1 }`.
+bool is_braced_word(std::string_view word);
+/// How an object is written whose name stands before a '{'. `around`: "...", or with what stands around the
+/// object.
+std::string braced_word_hint(std::string_view word, std::string_view around);
 
 } // namespace graftal

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "compiler/support/check.h"
+#include "compiler/syntax/lost_product.h"
 
 namespace graftal {
 
@@ -118,7 +119,8 @@ std::optional<Token> TokenStream::expect_string(std::string_view what) {
 }
 
 Diagnostic& TokenStream::expected(std::string_view what) {
-    return diagnostics_.error(peek().span, fmt::format("expected {}, found {}", what, found()));
+    return diagnostics_.error(peek().span, fmt::format("expected {}, found {}", what, found()))
+        .with_hint(at_ == 0 ? "" : lost_product_hint(previous(), peek()));
 }
 
 std::string TokenStream::found() const {

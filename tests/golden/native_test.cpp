@@ -70,6 +70,33 @@ TEST_F(Native, SaysHowManySamplesThereAre) {
                 AllOf(HasSubstr(" s  frame\n"), HasSubstr(" s  prepare\n"), HasSubstr(" s  trace\n")));
 }
 
+TEST_F(Native, SaysThatTheCameraLooksPastTheModel) {
+    const std::string warning = "warning: the camera sees no part of this model";
+    const std::string away = "camera { location: 0, 0, 5  look_at: 0, 0, 10 }\n",
+                      ball = "object a { sphere }\n";
+    const struct {
+        std::string text, options;
+        bool warns;
+    } cases[] = {
+        {away + ball, "", true},
+        {away + ball, " --camera 'look_at=0,0,0'", false},
+        {ball, " --camera 'location=0,0,5 look_at=9,0,5'", true},
+        {"camera { location: 0, 0, 5  look_at: 0, 0, 10  orthographic  width: 4 }\n" + ball, "", true},
+        {away + "ground { }\n" + ball, "", false},
+        {away + "sky { zenith: 0.3, 0.5, 0.9 }\n" + ball, "", false},
+        {away + "object a {\n sphere\n plane translate: 0, -1, 0\n}\n", "", false}};
+    for (const auto& [text, options, warns] : cases) {
+        write("m.inst", text);
+        const RunResult result = render("-q m.inst -o m.png" + options + small);
+        EXPECT_EQ(result.status, 0) << result.err;
+        EXPECT_EQ(result.err.find(warning) != std::string::npos, warns) << text << options << result.err;
+        EXPECT_EQ(result.err.find(warning), result.err.rfind(warning)) << "once";
+        if (warns) {
+            EXPECT_THAT(result.err, HasSubstr("'look_at: 0, 0, 0'"));
+        }
+    }
+}
+
 TEST_F(Native, LinearPngAndExrHoldTheSameValues) {
     ASSERT_EQ(render(gasket + small + "--test-linear -o a.png").status, 0);
     ASSERT_EQ(render(gasket + small + "-o a.exr").status, 0);

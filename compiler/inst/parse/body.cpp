@@ -13,6 +13,7 @@
 #include "compiler/inst/parse/repeat.h"
 #include "compiler/syntax/everyday_words.h"
 #include "compiler/syntax/expression_parser.h"
+#include "compiler/syntax/lost_product.h"
 
 namespace graftal {
 
@@ -86,8 +87,11 @@ class BodyParser {
         if (in_scatter() && at_scatter_line(stream_)) return parse_line_of_scatter();
         if (stream_.at_name()) return parse_bare_group();
         const bool open = stream_.at("{"), number = stream_.peek().kind == TokenKind::number;
+        const Token& before = stream_.previous();
         Diagnostic& error = stream_.expected("a line of an object");
-        error.with_hint(number ? "is it one number too many?" : choices("", body_lines()));
+        error.with_hint(number                                   ? "is it one number too many?"
+                        : open && before.kind == TokenKind::name ? braced_word_hint(before.text, "...")
+                                                                 : choices("", body_lines()));
         stream_.next();
         if (open) stream_.skip_block();
         return false;
@@ -133,6 +137,7 @@ class BodyParser {
     /// The count, the block of lines that each copy adds, and the repeated groups: one, or those of a block.
     bool parse_repeat() {
         std::optional<InstRepeat> repeat = parse_inst_repeat(stream_);
+        sealed_ |= !repeat; // lines behind it are not of the group before
         if (!repeat) return false;
         if (repeats_.size() == TokenStream::max_nesting) {
             diagnostics_
@@ -304,9 +309,10 @@ class BodyParser {
             return false;
         }
         if (!begins_line) {
+            std::string hint = lost_product_hint(stream_.previous(), name);
             stream_.next();
             const bool value = stream_.peek().kind == TokenKind::number || stream_.at("<");
-            const std::string hint = value ? keyword_hint(name) : did_you_mean(name.text, body_keywords());
+            if (hint.empty()) hint = value ? keyword_hint(name) : did_you_mean(name.text, body_keywords());
             diagnostics_
                 .error(name.span, value ? fmt::format("unknown keyword '{}'", name.text)
                                         : fmt::format("expected ',' or a new line before '{}'", name.text))

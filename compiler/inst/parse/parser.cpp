@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/inst/parse/body.h"
+#include "compiler/syntax/everyday_words.h"
 #include "compiler/syntax/expression_parser.h"
 #include "compiler/syntax/lexer.h"
 #include "compiler/syntax/token_stream.h"
@@ -67,6 +68,10 @@ class FileParser {
         InstDefinition definition;
         definition.rendered = !stream_.accept("canonical");
         if (!stream_.expect("object", definition.rendered ? "" : "canonical")) return false;
+        if (stream_.at("{")) {
+            stream_.expected("the name of the object").with_hint("give it one: object ball { sphere }");
+            return false;
+        }
         const std::optional<Token> name = stream_.expect_name("the name of the object");
         if (!name) return false;
         definition.name = name->text;
@@ -131,10 +136,13 @@ class FileParser {
             return;
         }
         const std::string foreign = foreign_word_hint(foreign_, token.text);
-        const bool assigns = token.kind == TokenKind::name && stream_.peek(1).is("=");
+        const bool name = token.kind == TokenKind::name;
+        const bool assigns = name && stream_.peek(1).is("=");
+        const bool braced = name && stream_.peek(1).is("{") && is_braced_word(token.text);
         stream_.expected("an object or a scene statement")
             .with_hint(!foreign.empty() ? foreign
                        : assigns        ? fmt::format("'let {} = ...' names a number", token.text)
+                       : braced         ? braced_word_hint(token.text, "object NAME { ... }")
                                         : choices(token.text, file_keywords()));
     }
 

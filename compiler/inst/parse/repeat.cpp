@@ -12,6 +12,9 @@ namespace {
 /// `( ... ) * {` takes no longer count; `repeat COUNT {` does.
 constexpr std::size_t max_count_tokens = 100;
 
+constexpr const char* repeat_hint =
+    "write what each copy adds in braces, and the objects after them: repeat 12 { rotate: y, 30 } leaf";
+
 /// The number of tokens of the parentheses at which the stream is.
 std::size_t parenthesis_end(const TokenStream& stream) {
     std::size_t depth = 0, at = 0;
@@ -57,12 +60,28 @@ bool parse_repeat_block(TokenStream& stream, InstRepeat& repeat) {
             if (!parse_inst_ink(stream, repeat.ink)) return false;
         } else {
             stream.expected("a transform, 'tint', 'hue', 'ink' or '}'")
-                .with_hint("write the objects after the braces: repeat 12 { rotate: y, 30 } leaf")
+                .with_hint(repeat_hint)
                 .with_note(open.span, "this '{' begins the lines that each copy adds");
             return false;
         }
     }
     return true;
+}
+
+/// Skips the rest of a block in error, and its '}': one on the same line, or with objects behind it. Another
+/// '}' may be that of the object.
+void skip_broken_block(TokenStream& stream) {
+    std::size_t depth = 1, at = 0;
+    bool same_line = true;
+    for (; stream.peek(at).kind != TokenKind::end; ++at) {
+        const Token& token = stream.peek(at);
+        same_line &= !token.first_on_line;
+        depth += token.is("{") ? 1 : 0;
+        if (token.is("}") && --depth == 0) break;
+    }
+    const Token& after = stream.peek(at + 1);
+    const bool objects = after.kind == TokenKind::name && !after.first_on_line;
+    if (depth == 0 && (same_line || objects)) stream.skip_block();
 }
 
 } // namespace
@@ -100,9 +119,16 @@ std::optional<InstRepeat> parse_inst_repeat(TokenStream& stream) {
     const Token first = stream.peek();
     const std::size_t begin = stream.position();
     std::optional<Expression> count = parse_count(stream);
-    if (!count || !stream.expect("{", "the count")) return std::nullopt;
+    if (!count) return std::nullopt;
+    if (!stream.accept("{")) {
+        stream.expected("'{' after the count").with_hint(repeat_hint);
+        return std::nullopt;
+    }
     repeat.count = std::move(*count);
-    if (!parse_repeat_block(stream, repeat)) return std::nullopt;
+    if (!parse_repeat_block(stream, repeat)) {
+        skip_broken_block(stream);
+        return std::nullopt;
+    }
     repeat.span = stream.span_from(first.span);
     repeat.size = static_cast<std::uint32_t>(stream.position() - begin);
     return repeat;

@@ -85,6 +85,30 @@ TEST(Importers, NameAForeignLanguageThatTheyDoNotRead) {
         EXPECT_THAT(Imported(name, text).said(), Not(HasSubstr("does not read that"))) << text;
 }
 
+TEST(Importers, AForeignTextUnderANameOfOursIsToldItsEnding) {
+    const std::vector<std::array<std::string, 3>> misnamed = {
+        {"a.inst", "startshape A\nrule A { CIRCLE { s 0.5 } A { x 1 s 0.9 } }\n", "ending .cfdg"},
+        {"a.lsys", "set maxdepth 100\nr1\nrule r1 { { x 1 ry 3 } r1\n box }\n", "ending .es"},
+        {"a.inst", "10 * { x 1 } box\n", "ending .es"},
+        {"a.lsys", two_models, "ending .l,"}};
+    for (const auto& [name, text, ending] : misnamed) {
+        const Imported model(name, text);
+        EXPECT_FALSE(model.graph);
+        EXPECT_EQ(model.diagnostics.error_count(), 1u) << model.said();
+        EXPECT_THAT(model.said(), HasSubstr(ending));
+    }
+    // Of ours, with a fault: they keep their own messages.
+    for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+             {"a.lsys", "lsys a {\n axiom F\n F=F+F\n}\n"},
+             {"a.inst", "object a { sphere } # startshape\ncube\n"},
+             {"a.inst", "object a {\n3 * { x 1 } box\n"},
+             {"a.lsys", "lsyst a {\n axiom F\n F -> F+F\n}\n"}}) {
+        const Imported model(name, text);
+        EXPECT_GT(model.diagnostics.error_count(), 0u) << text;
+        EXPECT_THAT(model.said(), Not(HasSubstr("looks like"))) << text;
+    }
+}
+
 TEST(Importers, AnErrorInATranslationNamesTheForeignLine) {
     const Imported model("a.ls", "3\n90\n10\nA\nA=F(1e90)A[A\n@\n");
     EXPECT_FALSE(model.graph);

@@ -10,6 +10,7 @@
 
 #include "compiler/scene/backdrop.h"
 #include "compiler/scene/framing.h"
+#include "compiler/scene/sight.h"
 
 namespace graftal {
 namespace {
@@ -238,6 +239,34 @@ TEST(Frame, EyeInsideTheModelIsHonoured) {
         EXPECT_EQ(camera.angle_deg, 60);
         expect_orthonormal(camera);
     }
+}
+
+TEST(Frame, MissesWhatIsBehindOrBesideThePictureOnly) {
+    const Box box{Vec3(-1), Vec3(1)};
+    Camera camera; // at z = 4, along -z: 40 degrees show 1.09 to either side at the box's near face
+    camera.location = {0, 0, 4};
+    const auto missed = [&] { return misses(camera, box, {400, 200}); };
+    EXPECT_FALSE(missed());
+    for (const double x : {2.5, 2.8, 2.9, 3.5}) { // of the far face 1.82 to the left of the eye are seen
+        camera.location.x = x;
+        EXPECT_EQ(missed(), x > 1 + 5 * std::tan(20 * pi / 180) * (1 + 2 * 4 / 400.0)) << x;
+        camera.location.x = -x;
+        EXPECT_EQ(missed(), x > 1 + 5 * std::tan(20 * pi / 180) * (1 + 2 * 4 / 400.0)) << x;
+    }
+    camera.location = {0, 2.5, 4}; // the picture is half as high as it is wide
+    EXPECT_TRUE(missed());
+    camera.location = {0, -2.5, 4};
+    EXPECT_TRUE(missed());
+    camera.location = {0, 0, -4};
+    EXPECT_TRUE(missed()) << "behind the eye";
+    camera.location = {0, 0, 0.5};
+    EXPECT_FALSE(missed()) << "around the eye";
+    camera.location = {2, 0, 4};
+    camera.orthographic = true;
+    camera.width = 3;
+    EXPECT_FALSE(missed());
+    camera.width = 1.9;
+    EXPECT_TRUE(missed());
 }
 
 TEST(Frame, UselessUpVectorsAreReplaced) {

@@ -71,6 +71,7 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"animate a.inst --quality nromal",
          "--quality: 'nromal' is not draft, normal or best (did you mean 'normal'?)\n"},
         {"render a.inst --quality 2", "--quality: '2' is not draft, normal or best\n"},
+        {"completion zhs", "graftal: SHELL: 'zhs' is not bash, fish or zsh (did you mean 'zsh'?)\n"},
         {"render a.inst --samples 0", "--samples: '0' is not a whole number from 1 to 65536\n"},
         {"render a.inst --noise 256", "--noise: '256' is not a number from 0 to 255\n"},
         {"render a.inst --device first", "--device: 'first' is not a whole number, 0 or more\n"},
@@ -223,8 +224,10 @@ TEST_F(CommandLine, ModelsOfOtherProgramsAreNamed) {
 
 TEST_F(CommandLine, CompilingNamesThePicturesBesideAScene) {
     const RunResult result = graftal("compile " + pound_sign + " --steps 5 -o hash.pov");
-    EXPECT_THAT(result.err, HasSubstr("; 1 picture beside it: hash_P_1.png\n"));
-    EXPECT_EQ(files(), "hash.pov hash_P_1.png");
+    EXPECT_THAT(result.err,
+                HasSubstr("; 8 pictures beside it: hash_P_1.png, hash_P_2.png, hash_P_3.png, ...\n"));
+    EXPECT_TRUE(exists("hash_P_8.png"));
+    EXPECT_EQ(files().find("rifs"), std::string::npos) << files();
 }
 
 TEST_F(CommandLine, HelpGoesToStandardOutput) {

@@ -84,8 +84,9 @@ Documents::Documents(CLI::App& app) : app_(app) {
         ->add_option("SHELL", shell_, fmt::format("The shell: {}", fmt::join(shells, ", ")))
         ->required()
         ->check([shells](const std::string& shell) {
-            return std::ranges::find(shells, shell) != shells.end() ? std::string()
-                                                                    : unknown_word("SHELL", shell, shells);
+            if (std::ranges::find(shells, shell) == shells.end())
+                throw CLI::ValidationError(unknown_word("SHELL", shell, shells));
+            return std::string();
         })
         ->type_name("");
     app.add_subcommand("manual", "Print a page of the manual")

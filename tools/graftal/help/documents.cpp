@@ -85,7 +85,8 @@ Documents::Documents(CLI::App& app) : app_(app) {
         ->required()
         ->check([shells](const std::string& shell) {
             if (std::ranges::find(shells, shell) == shells.end())
-                throw CLI::ValidationError(unknown_word("SHELL", shell, shells));
+                return unknown_word("SHELL", shell, shells)
+                    .substr(std::string("SHELL: ").size()); // the library puts the name before it
             return std::string();
         })
         ->type_name("");

@@ -71,12 +71,15 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
         {"animate a.inst --quality nromal",
          "--quality: 'nromal' is not draft, normal or best (did you mean 'normal'?)\n"},
         {"render a.inst --quality 2", "--quality: '2' is not draft, normal or best\n"},
+        {"completion zhs", "graftal: SHELL: 'zhs' is not bash, fish or zsh (did you mean 'zsh'?)\n"},
         {"render a.inst --samples 0", "--samples: '0' is not a whole number from 1 to 65536\n"},
         {"render a.inst --noise 256", "--noise: '256' is not a number from 0 to 255\n"},
         {"render a.inst --device first", "--device: 'first' is not a whole number, 0 or more\n"},
-        {"stats a.inst --steps infinite", "--steps: 'infinite' is for the model's file: write 'steps infinite'"},
-        {"render a.inst --width 300", "'render' has no option '--width' (width and height are one option, such "
-                                      "as '--size 640x480')\n"},
+        {"stats a.inst --steps infinite",
+         "--steps: 'infinite' is for the model's file: write 'steps infinite'"},
+        {"render a.inst --width 300",
+         "'render' has no option '--width' (width and height are one option, such "
+         "as '--size 640x480')\n"},
         {"points a.inst --height=300", "'points' has no option '--height' (width and height are one option"},
         {"render a.inst -w 300", "(width and height are one option"},
         {"animate a.inst +W300 +H200", "'animate' has no option '+W300' (width and height are one option"},
@@ -166,16 +169,18 @@ TEST_F(CommandLine, UsageErrorsAreStatusTwoAndPointAtTheHelp) {
 /// Every option that has a value is asked about a word that none takes: no answer is a library's.
 TEST_F(CommandLine, OptionsRefuseWordsInPlainEnglish) {
     std::set<std::string> asked;
-    for (const std::string command : {"render", "animate", "points", "collage", "fit", "compile", "export",
-                                      "stats", "print", "graph", "import", "compare", "format",
-                                      "farm plan", "farm submit"}) {
+    for (const std::string command :
+         {"render", "animate", "points", "collage", "fit", "compile", "export", "stats", "print", "graph",
+          "import", "compare", "format", "farm plan", "farm submit"}) {
         std::istringstream help(graftal(command + " --help").out);
         for (std::string line; std::getline(help, line);) {
             std::string name, value;
             std::istringstream words(line);
             words >> name >> value;
-            if (!name.starts_with("--") || !line.starts_with("  ") || !asked.insert(name + value).second) continue;
-            const bool chooses = value.find('|') != std::string::npos && value.find_first_of("[NDC") == std::string::npos;
+            if (!name.starts_with("--") || !line.starts_with("  ") || !asked.insert(name + value).second)
+                continue;
+            const bool chooses =
+                value.find('|') != std::string::npos && value.find_first_of("[NDC") == std::string::npos;
             const RunResult result = graftal(command + " a.inst " + name + " drfat");
             EXPECT_THAT(result.err, Not(AnyOf(HasSubstr("FAILED"), HasSubstr("{"), HasSubstr("Could not"))))
                 << command << ' ' << name;
@@ -204,8 +209,8 @@ TEST_F(CommandLine, SettingsOfACameraStandApartByBlanksOrCommas) {
 
 TEST_F(CommandLine, AFolderIsNoModel) {
     std::filesystem::create_directory(path("models"));
-    for (const char* command : {"render models", "stats models/", "check models", "format models", "fit models",
-                                "compare models models", "import models"})
+    for (const char* command : {"render models", "stats models/", "check models", "format models",
+                                "fit models", "compare models models", "import models"})
         EXPECT_THAT(graftal(command).err, HasSubstr("a folder, not a file: name a file in it")) << command;
 }
 
@@ -223,8 +228,10 @@ TEST_F(CommandLine, ModelsOfOtherProgramsAreNamed) {
 
 TEST_F(CommandLine, CompilingNamesThePicturesBesideAScene) {
     const RunResult result = graftal("compile " + pound_sign + " --steps 5 -o hash.pov");
-    EXPECT_THAT(result.err, HasSubstr("; 1 picture beside it: hash_P_1.png\n"));
-    EXPECT_EQ(files(), "hash.pov hash_P_1.png");
+    EXPECT_THAT(result.err,
+                HasSubstr("; 8 pictures beside it: hash_P_1.png, hash_P_2.png, hash_P_3.png, ...\n"));
+    EXPECT_TRUE(exists("hash_P_8.png"));
+    EXPECT_EQ(files().find("rifs"), std::string::npos) << files();
 }
 
 TEST_F(CommandLine, HelpGoesToStandardOutput) {

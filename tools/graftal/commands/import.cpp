@@ -52,8 +52,10 @@ class Importing {
         const LowerOptions& lower = options_.render.compile.lower;
         const std::string& root = lower.root;
         if (!is_foreign(path_.file)) {
-            found_.diagnostics.error(Span(),
-                                     fmt::format("'{}' is of no format that graftal imports", path_.file));
+            Diagnostic& error = found_.diagnostics.error(
+                Span(), fmt::format("'{}' is of no format that graftal imports", path_.file));
+            if (std::error_code ignored; std::filesystem::is_directory(path_.file, ignored))
+                error.with_hint("it is " + special_file_text(path_.file));
             return exit_fault;
         }
         if (path_.file != "-" && !root.empty() && !lies_in(path_.file, root)) {

@@ -78,9 +78,10 @@ std::string beside_text(const std::vector<std::string>& pictures) {
     constexpr std::size_t most_named = 3;
     if (pictures.empty()) return {};
     const std::size_t named = std::min(pictures.size(), most_named);
-    return fmt::format("; {} picture{} beside it: {}{}", pictures.size(), pictures.size() == 1 ? "" : "s",
-                       fmt::join(pictures.begin(), pictures.begin() + static_cast<std::ptrdiff_t>(named), ", "),
-                       named < pictures.size() ? ", ..." : "");
+    return fmt::format(
+        "; {} picture{} beside it: {}{}", pictures.size(), pictures.size() == 1 ? "" : "s",
+        fmt::join(pictures.begin(), pictures.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+        named < pictures.size() ? ", ..." : "");
 }
 
 } // namespace

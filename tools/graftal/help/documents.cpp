@@ -84,8 +84,10 @@ Documents::Documents(CLI::App& app) : app_(app) {
         ->add_option("SHELL", shell_, fmt::format("The shell: {}", fmt::join(shells, ", ")))
         ->required()
         ->check([shells](const std::string& shell) {
-            return std::ranges::find(shells, shell) != shells.end() ? std::string()
-                                                                    : unknown_word("SHELL", shell, shells);
+            if (std::ranges::find(shells, shell) == shells.end())
+                return unknown_word("SHELL", shell, shells)
+                    .substr(std::string("SHELL: ").size()); // the library puts the name before it
+            return std::string();
         })
         ->type_name("");
     app.add_subcommand("manual", "Print a page of the manual")

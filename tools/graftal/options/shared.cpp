@@ -52,9 +52,9 @@ std::optional<std::uint64_t> sensible_bytes(const std::string& name, const std::
     const std::optional<std::uint64_t> bytes = parse_bytes(text);
     const bool has_unit = text.find_first_not_of("0123456789") != std::string::npos;
     if (!bytes || has_unit || *bytes >= least_without_unit) return bytes;
-    throw CLI::ValidationError(
-        fmt::format("{}: '{}' is {} byte{}: give a unit, such as {}", name, text, *bytes, *bytes == 1 ? "" : "s",
-                    *bytes < 1024 ? fmt::format("{0}M or {0}G", *bytes) : fmt::format("{}K", *bytes >> 10)));
+    throw CLI::ValidationError(fmt::format(
+        "{}: '{}' is {} byte{}: give a unit, such as {}", name, text, *bytes, *bytes == 1 ? "" : "s",
+        *bytes < 1024 ? fmt::format("{0}M or {0}G", *bytes) : fmt::format("{}K", *bytes >> 10)));
 }
 
 std::string model_file_help(const std::string& more) {

@@ -5,6 +5,7 @@
 
 #include "compiler/analysis/counts.h"
 #include "compiler/languages/lower.h"
+#include "compiler/session/frame_model.h"
 #include "compiler/support/printable.h"
 
 namespace graftal {
@@ -41,7 +42,8 @@ constexpr StatsKey keys[] = {
     {"boxes most", "greatest slope from one side to its half"},
     {"boxes sides", "greatest and least side of the boxes that the slope is of"},
     {"boxes counts", "boxes of each of these sides, the greatest first"},
-    {"bounds min", "least x, y and z of a box that contains the figure"},
+    {"bounds min",
+     "least x, y and z of a box that contains the figure: of its limit, if it has over 200 levels"},
     {"bounds max", "greatest x, y and z of this box"},
     {"unbounded", "whether the model has an endless plane, which the bounds leave out"},
     {"error", "largest distance of a point from its exact place, in the model's units"},
@@ -103,11 +105,11 @@ Json contraction_json(const AnalysedModel& model) {
     return json;
 }
 
-Json bounds_json(const AnalysedModel& model) {
-    if (model.bounds.empty()) return nullptr;
-    const ObjectBounds& bounds = model.bounds[model.graph.root];
-    if (bounds.box.empty()) return nullptr;
-    return {{"min", vector_json(bounds.box.min)}, {"max", vector_json(bounds.box.max)}};
+/// The box of a figure of few levels: it may be a part of the limit set, and terminals may reach beyond that.
+Json bounds_json(const AnalysedModel& model, std::optional<unsigned> steps) {
+    if (model.bounds.empty() || model.bounds[model.graph.root].box.empty()) return nullptr;
+    const Box box = sight_of(model, steps).bounds;
+    return {{"min", vector_json(box.min)}, {"max", vector_json(box.max)}};
 }
 
 /// Families by the name of their model.
@@ -154,7 +156,7 @@ Json json_of(const AnalysedModel& model, std::optional<unsigned> steps, const So
     };
     if (boxes) json["boxes"] = boxes_json(*boxes);
     json.update({
-        {"bounds", bounds_json(model)},
+        {"bounds", bounds_json(model, steps)},
         {"unbounded", !model.bounds.empty() && model.bounds[graph.root].unbounded},
         {"error", model.derivation ? model.derivation->error : 0},
     });

@@ -1,5 +1,6 @@
 #include "tests/golden/command_line.h"
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -79,10 +80,29 @@ TEST_F(Stats, OfModelsPrintedAsRifsAreTheirs) {
     EXPECT_THAT(sign, ::testing::HasSubstr("follow {"));
     const std::string fern = graftal("print --as rifs " GRAFTAL_SOURCE_DIR "/scenes/ifs/fern.rifs").out;
     EXPECT_EQ(std::count(fern.begin(), fern.end(), '{'), 5) << fern;
+    // A terminal of four faces was left out without a word.
+    const RunResult many =
+        graftal("print --as rifs " GRAFTAL_SOURCE_DIR "/scenes/ifs/sierpinski_tetrahedron.rifs");
+    EXPECT_EQ(many.status, 1);
+    EXPECT_THAT(many.err, ::testing::HasSubstr("shapes, and a block takes one"));
     const RunResult elm = graftal("print --as rifs " GRAFTAL_SOURCE_DIR "/scenes/hart/elm.inst");
     EXPECT_EQ(elm.status, 1);
     EXPECT_THAT(elm.err,
                 ::testing::HasSubstr("no recurrent iterated function system: nothing in it contains itself"));
+}
+
+/// The box of a few levels was that of the limit, beyond which terminals reached.
+TEST_F(Stats, BoundsHoldTerminals) {
+    write("a.rifs", "rifs a {\n  map l { scale 1/2 }\n  map r { scale 1/2  translate <1/2, 0, 0> }\n"
+                    "  terminal cube scale 5\n}\n");
+    for (const int steps : {0, 1, 2, 6}) {
+        SCOPED_TRACE(steps);
+        const Json json = stats(path("a.rifs") + " --steps " + std::to_string(steps));
+        const double size = std::pow(0.5, steps);
+        EXPECT_NEAR(json["bounds"]["min"][0].get<double>(), -5 * size, 1e-9);
+        EXPECT_NEAR(json["bounds"]["max"][0].get<double>(), 1 - size + 5 * size, 1e-9);
+        EXPECT_NEAR(json["bounds"]["max"][1].get<double>(), 5 * size, 1e-9);
+    }
 }
 
 /// Boxes that the unfolding meets, against dimensions that are known.
@@ -104,6 +124,10 @@ TEST_F(Stats, BoxesHaveTheDimensionOfTheSet) {
         EXPECT_GE(boxes["most"], boxes["dimension"]) << scene;
     }
     EXPECT_FALSE(stats(pound_sign).contains("boxes"));
+    write("die.inst", "object die {\n  difference: cube, sphere scale: 1.2\n}\n");
+    const RunResult die = graftal("stats --boxes " + path("die.inst"));
+    EXPECT_EQ(die.status, 0) << die.err;
+    EXPECT_THAT(die.err, ::testing::HasSubstr("no boxes are counted"));
 }
 
 TEST_F(Stats, CountsAreExactAtAHundredLevels) {

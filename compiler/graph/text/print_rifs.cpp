@@ -150,7 +150,9 @@ class RifsPrinter {
         std::vector<Part> parts;
         if (const std::optional<Instance>& terminal = graph_.objects[id].terminal)
             add_ending(*terminal, parts);
-        if (parts.size() > 1) parts.clear(); // a block has one shape for a terminal, or none
+        if (parts.size() > 1)
+            why_ = fmt::format("the terminal of '{}' has {} shapes, and a block takes one",
+                               graph_.objects[id].name, parts.size());
         return parts;
     }
 

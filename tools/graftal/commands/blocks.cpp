@@ -52,7 +52,7 @@ std::string coded_text(const Options& options, const CodedPicture& coded) {
         sides += fmt::format("{} of {} pixels, ", coded.blocks[depth], least_side << depth);
     return fmt::format(
         "{}: {} bytes for {}x{} pixels, {:.3f} bits a pixel\n"
-        "error          {:.2f} levels of 255, root mean square; PSNR {:.2f} dB\n"
+        "error          {:.2f} levels of 255 in luma, root mean square; PSNR {:.2f} dB\n"
         "collage        {:.2f} levels, at most {:.1f}; every slope is at most {:.3f}, so the error "
         "is at most {:.0f}, and is {:.1f}\n"
         "blocks         {}{} of them flat; pools of at most {} domains\n"

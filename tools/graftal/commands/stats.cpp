@@ -20,6 +20,12 @@ int run_stats(const Options& options) {
         const double moves = share * compile.detail.work_seconds * WorkRates::shell_points;
         boxes = count_boxes(prepared->cut, prepared->cut.root, prepared->root_steps,
                             static_cast<std::uint64_t>(moves));
+        if (boxes->dimension == 0)
+            compilation.diagnostics.note(
+                model->graph.objects[model->graph.root].span,
+                first_combined(model->graph) < model->graph.objects.size()
+                    ? "no boxes are counted: a part of it is an intersection or a difference"
+                    : "no dimension by boxes: it has none, or fewer than three counts end within the work");
     }
     const int status = conclude(options, compilation);
     if (!model || status != exit_done) return status;

@@ -150,10 +150,9 @@ std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering)
                     ? fmt::format("a mesh is a part of a model: write 'object thing {{ mesh \"{}\" }}' "
                                   "into an .inst file beside it",
                                   file_name_of(name))
-                    : fmt::format(
-                          "the names of models end in {}; files of other programs, such as .cfdg, "
-                          ".es, .l, .ifs and .flame, are models too: 'graftal import --help' lists them",
-                          extensions(lowering.languages)));
+                    : fmt::format("the names of models end in {}; files of other programs, such as .cfdg, "
+                                  ".es, .l, .ifs and .flame, are models too",
+                                  extensions(lowering.languages)));
         return std::nullopt;
     }
     const std::string other = other_language_hint(file, *language, lowering);

@@ -243,6 +243,8 @@ void warn_of_no_sight(const ViewedModel& viewed, const ViewOptions& options, Dia
     if (options.zoom.active() || bounds.unbounded || bounds.box.empty() || view.ground || view.haze ||
         view.shows_sky_light || view.lens.radius > 0 || !misses(view.camera, bounds.box, view.size))
         return;
+    // Terminals of the last level may reach beyond the limit set.
+    if (!misses(view.camera, sight_of(*viewed.model, viewed.steps).bounds, view.size)) return;
     std::string middle;
     for (int axis = 0; axis < 3; ++axis) {
         if (axis > 0) middle += ", ";

@@ -1,6 +1,7 @@
 #include "compiler/syntax/everyday_words.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <span>
 
@@ -125,6 +126,18 @@ std::string braced_word_hint(std::string_view word, std::string_view around) {
     text.replace(text.find("..."), 3, object);
     if (braced.size.empty()) return fmt::format("write '{}'", text);
     return fmt::format("'{}' has {}: write '{}'", braced.ours, braced.size, text);
+}
+
+std::string lost_product_hint(const Token& before, const Token& token) {
+    constexpr std::array<std::string_view, 7> units = {"deg", "degrees", "rad", "px", "cm", "mm", "in"};
+    constexpr std::size_t longest_shown = 40;
+    if (before.kind != TokenKind::number || token.space_before || token.first_on_line) return {};
+    if (std::max(before.text.size(), token.text.size()) > longest_shown) return {};
+    if (token.is("(")) return fmt::format("write {}*(...)", before.text);
+    if (token.kind != TokenKind::name) return {};
+    if (std::ranges::find(units, token.text) != units.end())
+        return fmt::format("write the number without a unit: {}", before.text);
+    return fmt::format("write {}*{}", before.text, token.text);
 }
 
 } // namespace graftal

@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/syntax/lexer.h"
+
 namespace graftal {
 
 /// "write 'cube'" for `box`, a word for a shape; "" for words that are none. Capitals do not count.
@@ -14,5 +16,7 @@ bool is_braced_word(std::string_view word);
 /// How an object is written whose name stands before a '{'. `around`: "...", or with what stands around the
 /// object.
 std::string braced_word_hint(std::string_view word, std::string_view around);
+/// "write 0.78*s" between the two tokens of `0.78s`, where an expression ends too early; else "".
+std::string lost_product_hint(const Token& before, const Token& token);
 
 } // namespace graftal

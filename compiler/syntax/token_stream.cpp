@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "compiler/support/check.h"
-#include "compiler/syntax/lost_product.h"
+#include "compiler/syntax/everyday_words.h"
 
 namespace graftal {
 

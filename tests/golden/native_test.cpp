@@ -95,6 +95,11 @@ TEST_F(Native, SaysThatTheCameraLooksPastTheModel) {
             EXPECT_THAT(result.err, HasSubstr("'look_at: 0, 0, 0'"));
         }
     }
+    // Terminals reach beyond the limit.
+    write("m.rifs", "camera { location: 0, 3, 5  look_at: 0, 3, 0  orthographic  width: 2 }\n"
+                    "rifs a {\n  map l { scale 1/2 }\n  terminal cube scale 5\n}\n");
+    EXPECT_EQ(render("-q m.rifs --steps 0 -o m.png" + small).err.find(warning), std::string::npos);
+    EXPECT_NE(render("-q m.rifs --steps 8 -o m.png" + small).err.find(warning), std::string::npos);
 }
 
 TEST_F(Native, LinearPngAndExrHoldTheSameValues) {

@@ -123,10 +123,10 @@ TEST_F(WithEnvironment, CloudsAreTheSameInBothEnginesAndPrint) {
 
 TEST_F(WithEnvironment, ACompiledSceneHasItBesideIt) {
     ASSERT_EQ(graftal("compile a.inst -o scene.pov").status, 0);
-    EXPECT_EQ(files(), "a.inst a.inst_sky.exr scene.pov sky.exr");
+    EXPECT_EQ(files(), "a.inst scene.pov scene_sky.exr sky.exr");
     write("behind.inst", "sky { environment: \"sky.exr\" }\nbackground: 0,0,0\nobject a { sphere }\n");
     ASSERT_EQ(graftal("compile behind.inst -o behind.pov").status, 0);
-    EXPECT_THAT(files(), testing::Not(HasSubstr("behind.inst_sky.exr")));
+    EXPECT_THAT(files(), testing::Not(HasSubstr("behind_sky.exr")));
 }
 
 TEST_F(WithEnvironment, WhatItsPictureIsNotIsSaidAtItsPlace) {
@@ -162,7 +162,7 @@ TEST_F(WithEnvironment, IsThatOfTheModelItselfAlone) {
 
 TEST_F(Textured, CompiledScenesHaveThePicturesBesideThem) {
     ASSERT_EQ(graftal("compile " + textured + "-o scene.pov").status, 0);
-    EXPECT_EQ(files(), "scene.pov textured.inst_I_1.png textured.inst_I_2.png");
+    EXPECT_EQ(files(), "scene.pov scene_I_1.png scene_I_2.png");
     EXPECT_EQ(graftal("compile " + textured + "-o -").status, 1);
 }
 

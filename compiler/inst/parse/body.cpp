@@ -13,7 +13,6 @@
 #include "compiler/inst/parse/repeat.h"
 #include "compiler/syntax/everyday_words.h"
 #include "compiler/syntax/expression_parser.h"
-#include "compiler/syntax/lost_product.h"
 
 namespace graftal {
 

@@ -20,6 +20,7 @@
 #include "compiler/import/lpy/importer.h"
 #include "compiler/import/unread.h"
 #include "compiler/languages/languages.h"
+#include "compiler/support/alternatives.h"
 #include "compiler/support/path_text.h"
 #include "compiler/support/small_letters.h"
 #include "compiler/support/text_encoding.h"
@@ -45,11 +46,10 @@ bool has_ending(const Importer& importer, std::string_view ending) {
 /// The error that a file is of none of these formats: at its first words, with what each format has.
 void refuse(const ForeignFile& file, const std::vector<const Importer*>& rows) {
     const std::string_view name = file.sources.name(file.file), text = file.text();
-    std::string formats, signs;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        formats += fmt::format("{}{}", i == 0 ? "" : i + 1 == rows.size() ? " or " : ", ", rows[i]->format);
-        signs += fmt::format("{}{}: {}", i == 0 ? "" : "; ", rows[i]->format, rows[i]->sign);
-    }
+    const std::string formats = alternatives(rows, [](const Importer* row) { return row->format; });
+    std::string signs;
+    for (const Importer* const row : rows)
+        signs += fmt::format("{}{}: {}", signs.empty() ? "" : "; ", row->format, row->sign);
     if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
         file.diagnostics.error(Span(),
                                fmt::format("'{}' is no {}: its line {} has a byte 0, as no text has", name,
@@ -90,11 +90,7 @@ std::vector<std::string> names_of(const std::vector<ForeignModel>& models) {
 
 /// Whether the first word begins a statement in one of our languages, or nearly one of their own.
 bool begins_as_ours(FileId file, const SourceMap& sources) {
-    constexpr std::size_t glimpse = 4096;
-    Diagnostics ignored; // the front-end reads the text again
-    const std::size_t size = std::min(sources.text(file).size(), glimpse);
-    const std::vector<Token> tokens =
-        lex_range(sources, {file, 0, static_cast<std::uint32_t>(size)}, ignored);
+    const std::vector<Token> tokens = lex_beginning(sources, file);
     if (tokens[0].kind == TokenKind::end) return true; // a comment, as far as one sees
     const auto has_first = [&](const auto& words) {
         return std::ranges::find(words, tokens[0].text) != std::end(words);

@@ -7,6 +7,7 @@
 
 #include "compiler/lower/lowering.h"
 #include "compiler/primitives/mesh_file.h"
+#include "compiler/support/alternatives.h"
 #include "compiler/support/path_text.h"
 #include "compiler/syntax/lexer.h"
 
@@ -60,18 +61,9 @@ std::vector<std::string> first_words(const Language& language) {
     return words;
 }
 
-constexpr std::size_t glimpse = 4096;
-
-/// The part of a text that is enough for its first words, as a rule.
-Span beginning(FileId file, const SourceMap& sources) {
-    return {file, 0, static_cast<std::uint32_t>(std::min(sources.text(file).size(), glimpse))};
-}
-
 /// How to name a file that begins as no text of its language does, but as one of another; "" for other files.
 std::string other_language_hint(FileId file, const Language& own, const Lowering& lowering) {
-    Diagnostics ignored; // the front-end reads the text again
-    const std::string_view first =
-        lex_range(lowering.sources, beginning(file, lowering.sources), ignored)[0].text;
+    const std::string_view first = lex_beginning(lowering.sources, file)[0].text;
     const std::vector<std::string> words = first_words(own);
     if (std::ranges::find(words, first) != words.end() || contains(own.inner_keywords, first) ||
         !closest_name(first, words).empty())
@@ -85,10 +77,8 @@ std::string other_language_hint(FileId file, const Language& own, const Lowering
 /// Whether the first statement is one, or a misspelt one. Who names another file by mistake, or by the
 /// mistake of a stranger's link, must not see it printed line by line as bad syntax.
 bool looks_like_model(FileId file, const SourceMap& sources, std::span<const Language> languages) {
-    Diagnostics ignored; // the front-end reads the text again
-    const std::size_t size = sources.text(file).size();
-    std::vector<Token> tokens = lex_range(sources, beginning(file, sources), ignored);
-    if (tokens.size() < 3 && size > glimpse) tokens = lex(sources, file, ignored);
+    std::vector<Token> tokens = lex_beginning(sources, file);
+    if (Diagnostics ignored; tokens.size() < 3) tokens = lex(sources, file, ignored);
     if (tokens.size() == 1) return true; // empty, as the front-end will say
     const Token& first = tokens[0];
     const Token& second = tokens[1];
@@ -124,14 +114,8 @@ std::unique_ptr<const ModelTree> parse_model(const Language& language, FileId fi
 }
 
 std::string extensions(std::span<const Language> languages) {
-    std::string text;
-    for (std::size_t i = 0; i < languages.size(); ++i)
-        text += fmt::format("{}.{}",
-                            i == 0                      ? ""
-                            : i + 1 == languages.size() ? " or "
-                                                        : ", ",
-                            languages[i].extension);
-    return text;
+    return alternatives(languages,
+                        [](const Language& language) { return fmt::format(".{}", language.extension); });
 }
 
 std::optional<Graph> lower_file(FileId file, Span asked_for, Lowering& lowering) {

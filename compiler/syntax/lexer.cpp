@@ -314,4 +314,11 @@ std::vector<Token> lex_range(const SourceMap& sources, Span range, Diagnostics& 
     return Lexer(sources, range, diagnostics).run();
 }
 
+std::vector<Token> lex_beginning(const SourceMap& sources, FileId file) {
+    constexpr std::size_t most_bytes = 4096;
+    Diagnostics ignored;
+    const std::size_t size = std::min(sources.text(file).size(), most_bytes);
+    return lex_range(sources, {file, 0, static_cast<std::uint32_t>(size)}, ignored);
+}
+
 } // namespace graftal

@@ -35,4 +35,8 @@ std::vector<Token> lex(const SourceMap& sources, FileId file, Diagnostics& diagn
 /// Splits a part of a file into tokens, with spans in the file, as if nothing stood around it.
 std::vector<Token> lex_range(const SourceMap& sources, Span range, Diagnostics& diagnostics);
 
+/// The tokens of the first few KiB of a file, to tell what it is before a front-end reads all of it. Errors
+/// are left out, and the last token may be cut.
+std::vector<Token> lex_beginning(const SourceMap& sources, FileId file);
+
 } // namespace graftal

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "compiler/support/alternatives.h"
 #include "compiler/support/small_letters.h"
 
 namespace graftal {
@@ -23,11 +24,7 @@ const ExportFormat* find_export_format(std::string_view path) {
 }
 
 std::string export_endings() {
-    std::string text;
-    const std::span<const ExportFormat> all = export_formats();
-    for (std::size_t i = 0; i < all.size(); ++i)
-        text += std::string(i == 0 ? "" : i + 1 < all.size() ? ", " : " or ") + std::string(all[i].extension);
-    return text;
+    return alternatives(export_formats(), [](const ExportFormat& format) { return format.extension; });
 }
 
 std::string endings_with(bool ExportFormat::*has) {

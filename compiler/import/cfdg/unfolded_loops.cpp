@@ -63,6 +63,7 @@ void Unfolding::expand_loop(const Element& element, Surroundings at, Under under
     if (!element.name.empty()) at.values.insert_or_assign(element.name, Value::of(index));
     expand(element.other, at, under);
 }
+
 /// Whether the turns of a loop draw the same.
 bool Unfolding::is_even(const Element& loop, const std::string& space) const {
     const auto fixed = [&](const auto& self, const Elements& elements) -> bool {

@@ -97,7 +97,7 @@ TEST(Importers, AForeignTextUnderANameOfOursIsToldItsEnding) {
         EXPECT_EQ(model.diagnostics.error_count(), 1u) << model.said();
         EXPECT_THAT(model.said(), HasSubstr(ending));
     }
-    // Of ours, with a fault: they keep their own messages.
+    // Models in our languages, with a fault, keep their own messages.
     for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
              {"a.lsys", "lsys a {\n axiom F\n F=F+F\n}\n"},
              {"a.inst", "object a { sphere } # startshape\ncube\n"},

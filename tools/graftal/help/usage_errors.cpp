@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/support/alternatives.h"
 #include "compiler/support/diagnostics.h"
 #include "tools/graftal/help/format.h"
 
@@ -79,9 +80,7 @@ std::string unknown_command(const std::string& word, const std::vector<std::stri
 
 std::string unknown_word(const std::string& option, const std::string& word,
                          const std::vector<std::string>& words) {
-    std::string list;
-    for (std::size_t i = 0; i < words.size(); ++i)
-        list += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
+    const std::string list = alternatives(words, [](const std::string& name) { return name; });
     const std::string hint = did_you_mean(word, words);
     return fmt::format("{}: '{}' is not {}{}", option, word, list,
                        hint.empty() ? "" : fmt::format(" ({})", hint));

@@ -39,10 +39,13 @@ inline double work_after_stages(double work_seconds, double spent_seconds) {
 struct RayWork {
     static constexpr std::uint64_t part = 8;      ///< gone into
     static constexpr std::uint64_t stretched = 4; ///< more, for one that a map other than a similarity places
+    static constexpr std::uint64_t doubted = 3;   ///< more, for one that may be crushed: its map is looked at
     static constexpr std::uint64_t widened = 24;  ///< a leaf that is drawn larger than it is
     static constexpr std::uint64_t crushed = 12;  ///< looked at in the world: no ray is taken into its frame
-    static constexpr std::uint64_t asked = 10;    ///< an operand of a combination, for one place of the ray
-    static constexpr std::uint64_t boxes = 1;     ///< boxes of one node, held against a ray
+    static constexpr std::uint64_t image = 44; ///< the plane or line that a crushed part is in, and its size
+    static constexpr std::uint64_t leaf_in_world = 4; ///< a leaf there, held against the ray as a ball
+    static constexpr std::uint64_t asked = 10; ///< an operand of a combination, for one place of the ray
+    static constexpr std::uint64_t boxes = 1;  ///< boxes of one node, held against a ray
     static constexpr std::uint64_t boxes_of_packet = 3; ///< against all rays of a packet
     static constexpr std::uint64_t mesh_step = 4;       ///< a node or a triangle of a mesh's tree
     static constexpr std::uint64_t shaded = 4;          ///< a level of the path to what is seen

@@ -118,6 +118,7 @@ bool Traversal::may_meet(const FlatPart& part, const RayRange& range) const {
 
 bool Traversal::meet_leaf(const Primitive& primitive, const Affine& world_from_leaf, bool faint,
                           const Ball& ball, const RayRange& range) {
+    more_work_ += RayWork::leaf_in_world;
     const double half_width = model_.projection.least_half_width(ball);
     // Most leaves are missed: a test of a ball is faster than one of the leaf itself.
     const RayRange near =
@@ -190,6 +191,7 @@ void Traversal::keep_flat_way(std::uint32_t frame_number) {
 
 void Traversal::meet_flat(std::uint32_t frame_number, std::uint32_t number, const RayRange& range, bool any) {
     look_at_flat(1);
+    more_work_ += RayWork::image;
     const Frame& frame = frames_[frame_number];
     FlatPart start = flat_child(frame.world_from_node, number, frame.steps, frame.cut);
     scale_child(start, frame.scale);

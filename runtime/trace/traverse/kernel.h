@@ -251,8 +251,10 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
         if (!edge.similarity) {
             self.more_work_ += RayWork::stretched;
             flatness *= edge.flatness;
-            if (!(flatness > flattest_placement)) // the product of many flat maps need not be flat
+            if (!(flatness > flattest_placement)) { // the product of many flat maps need not be flat
+                self.more_work_ += RayWork::doubted;
                 flatness = self.placed_flatness(frames[entry.frame].world_from_node, edge);
+            }
             if (!(flatness > flattest_placement)) {
                 if (!self.searches_solids()) self.meet_flat(entry.frame, entry.entry, range, any);
                 return false;

@@ -309,6 +309,23 @@ TEST(Traversal, WorkCountsWhatIsLookedAtInTheWorld) {
         << "they are of the visits that a ray may make";
 }
 
+// Found by a random model: twelve unequal maps took twice the work that was allowed.
+TEST(Traversal, WorkCountsTheImageOfEachPartThatIsCrushed) {
+    Graph graph = empty_graph();
+    const ObjectId corners = graph.add({"corners", {}, {}, {}, {}});
+    const ObjectId ball = graph.primitive(PrimitiveKind::sphere);
+    for (int i = 0; i < 4; ++i)
+        place(graph, corners, ball,
+              Affine::translate({i % 2 - 0.5, i / 2 - 0.5, 0}) * Affine::scale(Vec3(0.1)));
+    for (int i = 0; i < 30; ++i)
+        place(graph, graph.root, corners, Affine::translate({0, 0, 0.1 * i}) * Affine::scale({1, 1, 0}));
+    const auto model = traced(graph, culled());
+    Traversal traversal(*model);
+    for (int i = 0; i < 100; ++i)
+        EXPECT_FALSE(traversal.meets_any({{1e-3 * i, 0, 10}, {0, 0, -1}}, {})) << "between the corners";
+    EXPECT_GE(traversal.work(), 100 * 30 * (RayWork::image + RayWork::crushed));
+}
+
 TEST(Traversal, WorkCountsThePathToWhatIsSeen) {
     const auto model = traced(test::tetrahedron(0.45), culled());
     Traversal traversal(*model);

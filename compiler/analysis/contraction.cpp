@@ -45,7 +45,7 @@ struct Findings {
     int depth = 1;
 };
 
-/// For all components together; none may take more than half of it.
+/// For all components together; none may take more than half of what is left.
 struct EffortLeft {
     std::uint64_t edge_visits = 6'000'000;
     std::uint64_t products = 2'000'000;
@@ -80,8 +80,9 @@ MetricChoice by_cycle_mean(const CycleGraph& cycle, Findings& findings) {
     return plain;
 }
 
-/// Step 2: other metrics. Gives the one with the least rate; the certificate becomes the one that makes the
-/// first bounds small, where one proves anything.
+/// Step 2: other metrics. Gives the choice with the least rate. The certificate becomes the one with the
+/// least condition / (1 - rate), where any proves something: by that factor bounds begin too large
+/// (bounding.h).
 MetricChoice by_metrics(const CycleGraph& cycle, const MetricChoice& plain, Findings& findings,
                         EffortLeft& effort) {
     const auto width = [](const MetricChoice& choice) {

@@ -13,8 +13,8 @@ namespace graftal {
 
 namespace {
 
-/// Reach of an object, from its origin and from its middle alike. For an object that gathers at one point,
-/// the farthest move of its parts on the way there.
+/// How far the object's ball reaches from the origin, or the largest coordinate of any part's move if that is
+/// more: an object that gathers at one point has no ball to speak of.
 double reach(const Object& object, const ObjectBounds& bounds) {
     double farthest = bounds.ball.empty() ? 0 : glm::length(bounds.ball.centre) + bounds.ball.radius;
     for (const Instance& instance : object.instances)

@@ -52,8 +52,9 @@ class Pieces {
         }
     }
 
-    /// Splits all that touch `about`, or nearly so, and are not small against it; false if there are none.
-    bool split_supporting(const Ball& about) {
+    /// Splits all that touch `about`, or nearly so, and are not small against it, as long as fewer than
+    /// `most` were made; false if there are none.
+    bool split_supporting(const Ball& about, std::size_t most) {
         std::vector<std::size_t> supporting;
         for (std::size_t i = 0; i < balls_.size(); ++i) {
             const Ball& ball = balls_[i];
@@ -62,7 +63,7 @@ class Pieces {
                 (1 - 0.25 * small_piece) * about.radius)
                 supporting.push_back(i);
         }
-        for (std::size_t k = supporting.size(); k-- > 0;) {
+        for (std::size_t k = supporting.size(); k-- > 0 && made_ < most;) {
             const std::size_t i = supporting[k];
             const Origin origin = origins_[i];
             balls_[i] = balls_.back();
@@ -137,11 +138,12 @@ class Pieces {
 
 Ball tight_ball(const Graph& graph, const Outers& outers, ObjectId id, std::size_t most_pieces,
                 const CancelFlag& cancel) {
+    constexpr std::size_t most_in_memory = 4'000'000; // the last round may make many more than `most_pieces`
     Pieces pieces(graph, outers, cancel);
     pieces.add_instances(id, Affine{});
     Ball best = smallest_ball(pieces.balls());
     Ball current = best;
-    while (pieces.made() < most_pieces && pieces.split_supporting(current)) {
+    while (pieces.made() < most_pieces && pieces.split_supporting(current, most_in_memory)) {
         current = smallest_ball(pieces.balls());
         if (current.radius < best.radius) best = current;
     }

@@ -39,7 +39,7 @@ AliasTables::Range AliasTables::add(const std::vector<double>& weights, std::uin
         rich.pop_back();
         poor.push_back(giver);
     }
-    // The remaining cells are full up to rounding, unless they have no weight at all.
+    // The remaining slots are full up to rounding, unless they have no weight at all.
     for (const std::uint32_t i : poor)
         if (weights[i] == 0)
             entries_[range.first + i].choice = entries_[range.first + i].alias =

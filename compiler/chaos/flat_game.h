@@ -29,8 +29,8 @@ struct FlatGame {
     std::vector<glm::vec4> forms;   ///< of surfaces, by move from `first_form` on
 
     std::vector<glm::uvec4> steps; ///< of formulas (compiler/syntax/steps/expression_steps.h)
-    std::vector<float> numbers;    ///< of these
-    std::uint32_t slots = 0;       ///< of these
+    std::vector<float> numbers;    ///< that the formulas name
+    std::uint32_t slots = 0;       ///< of memory that the formulas need
 
     AliasTables::Range sources; ///< where points come from; none: all from the core
     std::uint32_t first_form = 0;
@@ -40,8 +40,8 @@ struct FlatGame {
     bool formulas = false;            ///< in place of affine maps
     glm::vec4 origin{0.0};            ///< of walkers
     float restart = 0;                ///< OrbitModel::restart
-    bool climbs = false;              ///< from a core to the world
-    bool leaves = false;              ///< only by chance
+    bool climbs = false;              ///< points go from their core up to the root
+    bool leaves = false;              ///< a walker leaves the core at random
     bool flat = false;                ///< x and y of no map depend on z
     bool sees_through = false;        ///< what is behind points shows
     bool wide = false;                ///< some table has more slots than half of a random number tells apart

@@ -29,8 +29,8 @@ struct BakeRequest {
     double detail_per_unit = 0; ///< of the representative's frame, where it is seen largest
     double pixels_per_unit = 0; ///< likewise; decides how finely curved surfaces are meshed
     double error_px = 0;        ///< Projection::error_px()
-    /// Where the representative lies, less the place, in units of the least half width there (least_width.h):
-    /// what is too thin is widened as it is seen. All zero: nothing is culled.
+    /// Linear part of the map that places the representative, divided by the least half width there
+    /// (least_width.h): thin parts are widened as they are seen. All zero: nothing is culled.
     Mat3 half_widths_from_unit{0.0};
     std::optional<MaterialId> material; ///< the finish of what names no material
     std::vector<Painter> painters;
@@ -68,7 +68,7 @@ struct Baked {
     /// Triangles as work: those of pictures cost more, and those that other faces hide were made, too.
     std::uint64_t made_triangles = 0;
     std::uint64_t shell_work = 0; ///< points moved for a shell
-    bool complete = true;         ///< false: stopped at max_triangles, at most_visits, or where memory ended
+    bool complete = true;         ///< false: stopped at a limit of triangles or visits, or where memory ended
 };
 
 /// Largest error of curved surfaces where parts of `error_px` pixels are culled. If surfaces were much finer

@@ -9,7 +9,7 @@ namespace graftal {
 std::string readable_bytes(double bytes) {
     const char* const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB"};
     int unit = 0;
-    for (; bytes >= 1024 && unit < 5; ++unit)
+    for (; bytes >= 999.5 && unit < 5; ++unit)
         bytes /= 1024;
     return fmt::format("{:.3g} {}", bytes, units[unit]);
 }

@@ -221,7 +221,7 @@ class Measurer {
 double SelfShadows::share(NodeId node, double size_px) const {
     if (octave_logs_.empty() || !(size_px > lit_as_px)) return 1;
     const double exact = std::exp2(static_cast<double>(octave_logs_[node]) * std::log2(size_px / lit_as_px));
-    return std::round(steps_ * exact) / steps_;
+    return std::max(1.0, std::round(steps_ * exact)) / steps_; // a share of 0 would be black
 }
 
 double SelfShadows::share_within(double outer, NodeId node, double detail, double error_px) const {

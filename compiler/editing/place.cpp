@@ -44,7 +44,8 @@ bool is_silent(std::string_view text, std::size_t begin, std::size_t offset, boo
             at = end;
             continue;
         }
-        if (offset > at && (offset < end || (offset == end && text[at] == '#'))) return true;
+        if (offset > at && (offset < end || (offset == end && text[at] != '"' && text.substr(at, 2) != "/*")))
+            return true;
         at = end;
     }
     return false;

@@ -25,7 +25,7 @@ class AttractionPoints : public GrowthEnvironment {
     /// Each point attracts the query that is the nearest within its influence, and is gone once one comes
     /// close.
     bool answer(std::span<EnvironmentQuery> queries) override {
-        CellGrid grid(influence_);
+        CellGrid grid(std::max(influence_, kill_));
         for (std::uint32_t i = 0; i < queries.size(); ++i)
             grid.add(queries[i].place, i);
         std::vector<double> counts(queries.size());

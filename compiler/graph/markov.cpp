@@ -26,7 +26,7 @@ class Chances {
     }
 
     /// Takes out the last state of `size`: walks through it become steps between the others. `leaving` is the
-    /// chance to leave it by a step to another.
+    /// chance to leave it, by a step to another or for good.
     void take_out(std::uint32_t last, double leaving) {
         for (std::uint32_t from = 0; from < last; ++from) {
             const double there = at(from, last) / leaving;

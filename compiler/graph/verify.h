@@ -23,7 +23,8 @@ struct Flaw {
 /// objects have bounds, and lie in no cycle. O(graph).
 std::vector<Flaw> verify(const Graph& graph);
 
-/// Aborts, naming `stage` and the object, if verify() finds a flaw: for use after lowering and each pass.
+/// Throws an exception that names `stage` and the object, if verify() finds a flaw: for use after lowering
+/// and each pass.
 void check_verified(const Graph& graph, std::string_view stage);
 
 } // namespace graftal

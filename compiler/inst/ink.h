@@ -63,8 +63,8 @@ std::optional<InkChange> lower_ink(const std::vector<InstInkStep>& steps, const 
                                    Diagnostics& diagnostics, const ChanceDraws& draws);
 
 /// Hands inks down to the primitives, which get them as tints that cover; where alpha is not 1, as
-/// materials. If paths reach an object with different inks, the graph gets one copy of it for each; inks
-/// that differ by less than 2^-16 of a channel's range are one. Once the graph has 100,000 objects, an
+/// materials. If paths reach an object with different inks, the graph gets one copy of it for each. Inks are
+/// told apart by channels in 65,536 steps. Once the graph has 100,000 objects, or twice as many as before, an
 /// object takes the nearest ink that it has already, with a note. `hues` gets rows for the copies. An error,
 /// at `place`: more objects than the options allow.
 bool apply_inks(Graph& graph, const InkTable& inks, HueTable& hues, Span place, Lowering& lowering);

@@ -82,6 +82,10 @@ double area(const Primitive&) {
     return 24;
 }
 
+double volume(const Primitive&) {
+    return 8;
+}
+
 SurfaceSite site(const Primitive&, Vec3 u) {
     const int face = std::min(static_cast<int>(6 * u.z), 5);
     const int axis = face / 2;
@@ -121,6 +125,7 @@ constinit const PrimitiveTraits cube_traits = flat_row(
         .solid = true,
         .texture_point = texture_point,
         .area = area,
+        .volume = volume,
         .site = site,
         .intersect = intersect,
     },

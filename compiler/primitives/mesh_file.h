@@ -28,7 +28,7 @@ inline constexpr std::size_t most_mesh_vertices = 1'000'000;
 /// No coordinate is larger.
 inline constexpr double most_mesh_coordinate = 1e6;
 
-/// Reads a mesh: OBJ (vertices, normals, texture coordinates, faces of any number of corners, cut into fans)
+/// Reads a mesh: OBJ (vertices, normals, texture coordinates, faces of any number of corners, cut into fans),
 /// PLY or STL (ascii or binary; their bytes say which). Leaves out triangles without an area, and those that
 /// come again. Nothing, and what is at fault, for what is none of these, is damaged, or has too much or
 /// nothing in it: counts in a file are held against the limits and its length before anything is made room
@@ -41,7 +41,8 @@ std::string fault_of_coordinate(double coordinate);
 /// Whether a file of this name promises a mesh, by its ending.
 bool is_mesh_name(std::string_view file_name);
 
-/// The parts of read_mesh(). A fault begins with its line, or in binary parts with its byte.
+/// The parts of read_mesh(). A fault begins with its line, or in a PLY's body and in binary parts with its
+/// byte.
 std::optional<MeshData> read_obj(std::string_view text, std::string& fault);
 std::optional<MeshData> read_ply(std::string_view bytes, std::string& fault);
 std::optional<MeshData> read_stl(std::string_view bytes, std::string& fault);

@@ -104,9 +104,10 @@ class PlyReader {
         if (words[0] == "format" && words.size() >= 2) {
             has_format_ = true;
             text_ = words[1] == "ascii";
-            swapped_ = words[1] == (std::endian::native == std::endian::little ? "binary_big_endian"
-                                                                               : "binary_little_endian");
-            return text_ || swapped_ || words[1].starts_with("binary_") ||
+            constexpr bool is_little = std::endian::native == std::endian::little;
+            swapped_ = words[1] == (is_little ? "binary_big_endian" : "binary_little_endian");
+            return text_ || swapped_ ||
+                   words[1] == (is_little ? "binary_little_endian" : "binary_big_endian") ||
                    fail(fmt::format("'{}' is no format of PLY files", words[1]));
         }
         if (words[0] == "element" && words.size() == 3) {

@@ -135,6 +135,8 @@ struct PrimitiveTraits {
                                                     const std::array<Vec3, 3>&) = nullptr;
 
     double (*area)(const Primitive&);
+    /// The volume of a solid, in closed form; else null.
+    double (*volume)(const Primitive&) = nullptr;
     /// The point of the surface that three numbers of [0, 1) choose; evenly spread numbers give evenly spread
     /// points.
     SurfaceSite (*site)(const Primitive&, Vec3 choice);

@@ -1,6 +1,8 @@
 #include "compiler/primitives/solid.h"
 
+#include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -15,7 +17,7 @@ namespace {
 /// The solid that the triangles of a mesh bound.
 struct MeshSolid {
     bool closed = false;
-    bool inside_out = false; ///< its normals point inwards
+    double volume = 0; ///< below 0 where its normals point inwards
 };
 
 struct LessPoint {
@@ -46,7 +48,7 @@ MeshSolid solid_of(const TriangleMesh& mesh) {
     }
     for (const auto& [side, count] : excess)
         if (count != 0) return {};
-    return {volume != 0, volume < 0};
+    return {volume != 0, volume / 6};
 }
 
 const MeshSolid* mesh_solid(const Primitive& primitive) {
@@ -63,9 +65,16 @@ bool encloses_volume(const Primitive& primitive) {
     return !mesh || mesh->closed;
 }
 
+std::optional<double> volume_of(const Primitive& primitive) {
+    if (!encloses_volume(primitive)) return 0;
+    if (const MeshSolid* const mesh = mesh_solid(primitive)) return std::abs(mesh->volume);
+    const auto volume = traits_of(primitive).volume;
+    return volume ? std::optional(volume(primitive)) : std::nullopt;
+}
+
 bool leaves_solid(const Primitive& primitive, const Ray& ray, const PrimitiveHit& hit) {
     if (hit.facet_side == 0) return glm::dot(hit.normal, ray.direction) > 0;
-    return (hit.facet_side > 0) != mesh_solid(primitive)->inside_out;
+    return (hit.facet_side > 0) != (mesh_solid(primitive)->volume < 0);
 }
 
 } // namespace graftal

@@ -121,6 +121,10 @@ double area(const Primitive&) {
     return 4 * pi;
 }
 
+double volume(const Primitive&) {
+    return 4 * pi / 3;
+}
+
 SurfaceSite site(const Primitive&, Vec3 u) {
     const double y = 2 * u.x - 1;
     Vec3 p = std::sqrt(std::max(0.0, 1 - y * y)) * circle_point(u.y);
@@ -158,6 +162,7 @@ constinit const PrimitiveTraits sphere_traits = {
     .wrap = {.around = true},
     .texture_point = texture_point,
     .area = area,
+    .volume = volume,
     .site = site,
     .intersect = intersect,
 };

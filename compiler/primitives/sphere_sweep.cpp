@@ -110,9 +110,11 @@ class SweepMesh {
     void add_ring(const SweptRing& ring, double tilt, double v) {
         const Vec3 third = glm::cross(ring.along, ring.side);
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        // A pole is one point to the last bit, or the mesh would not be closed there.
+        const double across = std::abs(tilt) == pi / 2 ? 0 : std::cos(tilt);
         for (int i = 0; i < sides; ++i) {
             const double angle = 2 * pi * i / sides;
-            const Vec3 normal = std::cos(tilt) * (std::cos(angle) * ring.side + std::sin(angle) * third) +
+            const Vec3 normal = across * (std::cos(angle) * ring.side + std::sin(angle) * third) +
                                 std::sin(tilt) * ring.along;
             mesh.vertices.push_back(ring.centre + ring.radius * normal);
             mesh.normals.push_back(normal);
@@ -155,7 +157,7 @@ std::optional<Primitive> make(std::span<const double> numbers, std::string& faul
     }
     MeshData mesh = without_slivers(SweepMesh(rings_of(balls)).mesh);
     if (mesh.triangles.empty()) {
-        fault = "the sphere sweep has no surface: all its radii are 0";
+        fault = "the sphere sweep has no surface: its radii are too small";
         return std::nullopt;
     }
     return Primitive(PrimitiveKind::sphere_sweep,

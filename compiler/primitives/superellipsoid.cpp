@@ -231,6 +231,17 @@ double area(const Primitive& primitive) {
     return skin_of(primitive).areas.whole();
 }
 
+double beta(double a, double b) {
+    return std::exp(std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b));
+}
+
+/// A. Jaklic, A. Leonardis, F. Solina, "Segmentation and Recovery of Superquadrics", 2000,
+/// chapter 2.
+double volume(const Primitive& primitive) {
+    const double e = form_of(primitive).e, n = form_of(primitive).n;
+    return 2 * e * n * beta(n / 2 + 1, n) * beta(e / 2, e / 2);
+}
+
 SurfaceSite site(const Primitive& primitive, Vec3 u) {
     const Norm& norm = form_of(primitive).norm;
     const Skin& skin = skin_of(primitive);
@@ -324,6 +335,7 @@ constinit const PrimitiveTraits superellipsoid_traits = {
     .wrap = {.around = true},
     .texture_point = texture_point,
     .area = area,
+    .volume = volume,
     .site = site,
     .intersect = intersect,
 };

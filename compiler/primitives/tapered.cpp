@@ -84,6 +84,11 @@ double tapered_area(const Primitive& primitive) {
     return pi * (1 + top * top) + side_area(top);
 }
 
+double tapered_volume(const Primitive& primitive) {
+    const double top = top_radius(primitive);
+    return pi / 3 * (1 + top + top * top);
+}
+
 /// A lower disc, perhaps an upper one, and the side.
 SurfaceSite tapered_site(const Primitive& primitive, Vec3 u) {
     const double top = top_radius(primitive);

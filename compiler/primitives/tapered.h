@@ -24,6 +24,7 @@ bool tapered_keeps(const Primitive& primitive, const Affine& map);
 double tapered_mesh_error(const Primitive& primitive, int fineness);
 TexturePoint tapered_texture_point(const Primitive& primitive, const TextureSpace& space, Vec3 point);
 double tapered_area(const Primitive& primitive);
+double tapered_volume(const Primitive& primitive);
 SurfaceSite tapered_site(const Primitive& primitive, Vec3 choice);
 // Columns of those with two caps.
 std::vector<HullPiece> tapered_hull(const Primitive& primitive);
@@ -42,6 +43,7 @@ constexpr PrimitiveTraits tapered_row(PrimitiveTraits own) {
     own.wrap = {.around = true, .along = true};
     own.texture_point = tapered_texture_point;
     own.area = tapered_area;
+    own.volume = tapered_volume;
     own.site = tapered_site;
     return own;
 }

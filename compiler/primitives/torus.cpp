@@ -122,6 +122,10 @@ double area(const Primitive&) {
     return 4 * pi * pi * tube_radius;
 }
 
+double volume(const Primitive&) {
+    return 2 * pi * pi * tube_radius * tube_radius;
+}
+
 /// Round the tube the area grows with the distance from the axis: a part of the points moves outwards.
 SurfaceSite site(const Primitive&, Vec3 u) {
     double tube = 2 * pi * u.x;
@@ -275,6 +279,7 @@ constinit const PrimitiveTraits torus_traits = {
     .wrap = {.around = true, .tube = true},
     .texture_point = texture_point,
     .area = area,
+    .volume = volume,
     .site = site,
     .intersect = intersect,
 };

@@ -23,9 +23,9 @@ class TriangleTree {
     /// The first triangle that a ray meets within the range, from either side; false if there is none. Any
     /// of triangles no farther apart than `one_depth` may be the first. Adds to `steps` the nodes that the
     /// ray came to and the triangles that it was held against, each twice where the tree is larger than the
-    /// caches of a processor. Ends after `most_steps`, which are about as
-    /// many: the first triangle is then the first one met so far. If none was met, the box that the ray came
-    /// to last is met as a whole.
+    /// caches of a processor. It ends after `most_steps` of these: the first
+    /// triangle is then the first one met so far. If none was met, the box that the ray came to last is met
+    /// as a whole.
     bool meet(const Ray& ray, const RayRange& range, TriangleHit& hit, std::uint32_t& triangle,
               std::uint64_t& steps, std::uint64_t most_steps = UINT64_MAX) const;
 

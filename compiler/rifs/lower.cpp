@@ -252,10 +252,10 @@ class RifsLowering {
         });
     }
 
-    /// A_j = w_j(C u U A_i): the condensation sets of the block that w_j is applied to, then the masters.
     /// None where it is smaller than a chance may be: no random number stands for it.
     static double stated_chance(double chance) { return is_size(chance) ? chance : 0; }
 
+    /// A_j = w_j(C u U A_i): the condensation sets of the block that w_j is applied to, then the masters.
     void add_node(const RifsNode& node, std::string name, const std::vector<ObjectId>& ids) {
         Object object;
         object.name = std::move(name);

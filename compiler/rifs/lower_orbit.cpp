@@ -92,6 +92,14 @@ class OrbitLowering {
                     return *value;
                 }
         Expression copy;
+        // A function reads the block's constants, whatever a map calls its own.
+        if (const auto constant = model_.lets.find(std::string(e.text));
+            e.kind == Expression::Kind::name && !arguments.empty() && constant != model_.lets.end() &&
+            !std::isnan(constant->second)) {
+            copy.number = constant->second;
+            copy.span = e.span;
+            return copy;
+        }
         copy.kind = e.kind;
         copy.number = e.number;
         copy.text = e.text;

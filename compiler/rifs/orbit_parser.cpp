@@ -128,6 +128,10 @@ class OrbitParser {
         do {
             const std::optional<Name> parameter = parse_rifs_name(stream_, "the name of a parameter");
             if (!parameter) return false;
+            for (const Name& other : function.parameters)
+                if (other.text == parameter->text)
+                    diagnostics_.error(parameter->span,
+                                       fmt::format("'{}' has two parameters '{}'", name.text, other.text));
             function.parameters.push_back(*parameter);
         } while (stream_.accept(","));
         if (!stream_.expect(")", function.parameters.back().text) || !stream_.expect("=", ")")) return false;

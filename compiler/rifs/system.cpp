@@ -20,7 +20,6 @@ namespace graftal {
 namespace {
 
 constexpr double probability_slack = 0.02;
-/// Beyond this a suggestion for a misspelt name would take longer than it is worth.
 
 class SystemBuilder {
   public:

@@ -72,10 +72,12 @@ bool parse_row_numbers(TokenStream& stream, const CodeColumns& columns, RifsMap&
         map.codes.pop_back();
         return true;
     }
-    stream.diagnostics().error(stream.span_from(first.span),
-                               fmt::format("a row of 'codes {}' takes {} or {} numbers ({}), not {}",
-                                           columns.keyword, columns.count, columns.count + 1, columns.names,
-                                           count));
+    stream.diagnostics().error(
+        stream.span_from(first.span),
+        fmt::format("a row of 'codes {}' takes {} or {}{} numbers ({}), not {}", columns.keyword,
+                    columns.count, columns.count + 1,
+                    most == columns.count ? "" : fmt::format(", in space {} or {},", most, most + 1),
+                    columns.names, count));
     return false;
 }
 

@@ -9,7 +9,7 @@
 namespace graftal {
 
 bool misses(const Camera& camera, const Box& box, ImageSize size) {
-    constexpr double margin_px = 4; // the least width that parts are drawn with
+    constexpr double margin_px = 4; // more than thin parts are widened by (least_width.h)
     const double half =
         camera.orthographic ? 0.5 * camera.width : std::tan(camera.angle_deg * std::numbers::pi / 360);
     const double pixel = 2 * half / size.width;

@@ -65,7 +65,7 @@ class Session {
 
     /// Without this, textures are taken on trust.
     void look_at_textures(LookAtTexture look) { look_at_texture_ = std::move(look); }
-    /// Without this, environments too, and they are white.
+    /// Without this, pictures of skies are not looked at, and count as white.
     void load_sky_pictures(LoadSkyPicture load) { load_sky_picture_ = std::move(load); }
     /// Without this, models of other programs are not read.
     void translate_with(Translator translator) { translator_ = translator; }
@@ -102,7 +102,7 @@ class Session {
         bool reads_steps = true;
         bool reads_time = true;
         bool limited_by_work = true;
-        /// Options that one of both does not read make no difference.
+        /// An option that the lowering of either key did not read is not compared.
         bool operator==(const LowerKey& other) const;
     };
     struct AnalyseKey {
@@ -124,8 +124,8 @@ class Session {
         PrepareOptions options;
         bool operator==(const PrepareKey&) const = default;
     };
-    /// Value of the work. Null, with a failed status, if it was cancelled; null after an error if it would
-    /// take more than is allowed.
+    /// Runs `work` and gives its value. Null, with a failed status, if it was cancelled; null after an error
+    /// if it would take more than is allowed.
     template<typename Value, typename Work>
     std::shared_ptr<const Value> unless_ended(Compilation& compilation, const Work& work);
     /// The control, with an account for the work of a stage.

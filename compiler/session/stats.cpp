@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/analysis/counts.h"
+#include "compiler/analysis/volume.h"
 #include "compiler/languages/lower.h"
 #include "compiler/session/frame_model.h"
 #include "compiler/support/printable.h"
@@ -45,6 +46,11 @@ constexpr StatsKey keys[] = {
     {"bounds min",
      "least x, y and z of a box that contains the figure: of its limit, if it has over 200 levels"},
     {"bounds max", "greatest x, y and z of this box"},
+    {"volume least",
+     "volume that the solids of the figure enclose together, at least: those that may overlap "
+     "count once"},
+    {"volume most",
+     "the same at most: those that may overlap count each. Both are equal where graftal knows it exactly"},
     {"unbounded", "whether the model has an endless plane, which the bounds leave out"},
     {"error", "largest distance of a point from its exact place, in the model's units"},
     {"time", "age of the plant in steps, with the elapsed share of the next step"},
@@ -112,6 +118,13 @@ Json bounds_json(const AnalysedModel& model, std::optional<unsigned> steps) {
     return {{"min", vector_json(box.min)}, {"max", vector_json(box.max)}};
 }
 
+Json volume_json(const AnalysedModel& model, std::optional<unsigned> steps) {
+    if (model.bounds.empty()) return nullptr;
+    const std::optional<VolumeRange> volume =
+        volume_range(model.graph, model.components, model.bounds, steps);
+    return volume ? Json{{"least", volume->least}, {"most", volume->most}} : Json(nullptr);
+}
+
 /// Families by the name of their model.
 Json families_json(const Derivation& derivation) {
     Json families = Json::object();
@@ -157,6 +170,7 @@ Json json_of(const AnalysedModel& model, std::optional<unsigned> steps, const So
     if (boxes) json["boxes"] = boxes_json(*boxes);
     json.update({
         {"bounds", bounds_json(model, steps)},
+        {"volume", volume_json(model, steps)},
         {"unbounded", !model.bounds.empty() && model.bounds[graph.root].unbounded},
         {"error", model.derivation ? model.derivation->error : 0},
     });

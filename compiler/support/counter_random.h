@@ -33,4 +33,19 @@ class CounterRandom {
     std::uint64_t key_;
 };
 
+/// Random numbers one after the other, of one of the sequences of a seed.
+class RandomStream {
+  public:
+    RandomStream(std::uint64_t seed, std::uint64_t sequence)
+        : random_(CounterRandom(seed).sequence(sequence)) {}
+
+    std::uint64_t bits() { return random_(count_++); }
+    /// A number of [0, 1).
+    double unit() { return CounterRandom::unit(bits()); }
+
+  private:
+    CounterRandom random_;
+    std::uint64_t count_ = 0;
+};
+
 } // namespace graftal

@@ -12,7 +12,7 @@ class StageWork {
   public:
     static constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-    /// `spent`: by stages before. `kept`: for what comes after, by stages that choose how much they do.
+    /// `spent_seconds`: by stages before. `kept_seconds`: what left() keeps back for stages to come.
     explicit StageWork(double limit_seconds = unlimited, double spent_seconds = 0, double kept_seconds = 0)
         : limit_(limit_seconds), kept_(kept_seconds), seconds_(spent_seconds) {}
 

@@ -110,7 +110,8 @@ double table_value(std::span<const double> table, double x) {
     const double place = std::clamp(x, 0.0, 1.0) * pieces;
     const double piece = std::min(std::floor(place), pieces - 1);
     const auto at = static_cast<std::size_t>(piece);
-    return table[at] + (place - piece) * (table[at + 1] - table[at]);
+    const double rise = table[at + 1] - table[at], share = place - piece;
+    return std::isfinite(rise) ? table[at] + share * rise : (1 - share) * table[at] + share * table[at + 1];
 }
 
 std::span<const ExpressionFunction> chance_functions() {

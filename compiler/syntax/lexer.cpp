@@ -63,9 +63,10 @@ class Lexer {
     std::vector<Token> run() {
         if (begin_ == 0 && text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
         if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) refuse_utf16();
-        while (skip_blanks() && tokens_.size() < max_tokens && !diagnostics_.full())
+        bool more = true;
+        while ((more = skip_blanks()) && tokens_.size() < max_tokens && !diagnostics_.full())
             lex_token();
-        if (tokens_.size() >= max_tokens)
+        if (more && tokens_.size() >= max_tokens)
             diagnostics_.error(span_from(at_), fmt::format("the model has more than {} words", max_tokens));
         const std::size_t end = tokens_.empty() ? begin_ : tokens_.back().span.end;
         at_ = end;

@@ -360,6 +360,7 @@ class Rerooter {
             Instance instance;
             instance.master = piece.object;
             instance.parent_from_child = picture_from_frame * piece.frame_from_piece;
+            if (instance.parent_from_child.linear == Mat3(0.0)) continue; // crushed twice, to a point
             instance.tint = straight(piece.tint);
             instance.material = piece.material;
             instance.span = root.span;

@@ -285,7 +285,8 @@ std::string plant_endings() {
     return fmt::format("{}, {} or {}", formats[0].extension, formats[1].extension, formats[2].extension);
 }
 
-std::string vain_plant_wish(const PlantFormat& format, const ExportOptions& options, bool finds_parts) {
+std::string refusal_of_plant_options(const PlantFormat& format, const ExportOptions& options,
+                                     bool finds_parts) {
     ExportFormat takes_none;
     takes_none.extension = format.extension;
     if (const ExportWish* const wish = find_vain_wish(takes_none, options))

@@ -36,7 +36,8 @@ std::string plant_endings();
 
 /// The problem with options that say nothing to the format; "" if there is none. `finds_parts`: parts are
 /// asked for by their size or address.
-std::string vain_plant_wish(const PlantFormat& format, const ExportOptions& options, bool finds_parts);
+std::string refusal_of_plant_options(const PlantFormat& format, const ExportOptions& options,
+                                     bool finds_parts);
 
 /// Writes the plant of an L-system to the file that the options name, with the light on its organs where
 /// `light` is not null; its summary, or nothing after an error in the compilation. `render`: the stages and

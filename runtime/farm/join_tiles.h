@@ -11,7 +11,7 @@ namespace graftal {
 /// Bytes of memory for a row of tiles while it is joined.
 std::uint64_t band_bytes(ImageSize size, int tile_height);
 
-/// The most that it may: whoever plans tiles keeps to it.
+/// The most that band_bytes() may be of a job.
 inline constexpr std::uint64_t most_band_bytes = 192u << 20;
 
 /// Joins the parts of a job of tiles: the bytes of the file that one run would have written. Holds one row of

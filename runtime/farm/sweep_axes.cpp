@@ -27,10 +27,11 @@ bool is_name(std::string_view text) {
     return !(text.front() >= '0' && text.front() <= '9');
 }
 
-/// A number in the digits that people write: 0.1 + 0.2 is 0.3.
-std::string short_text(double value) {
-    constexpr double least = 1e-12; // of sums that are meant to be 0
-    return fmt::format("{:.12g}", std::abs(value) < least ? 0.0 : value);
+/// A number of a range in the digits that people write: 0.1 + 0.2 is 0.3. `step`: of the range.
+std::string short_text(double value, double step) {
+    constexpr double least = 1e-9; // share of a step, of sums that are meant to be 0
+    if (value == std::round(value) && std::abs(value) < 1e15) return fmt::format("{:.0f}", value);
+    return fmt::format("{:.12g}", std::abs(value) < least * step ? 0.0 : value);
 }
 
 bool add_range(std::string_view from_text, std::string_view rest, std::vector<std::string>& values) {
@@ -43,7 +44,7 @@ bool add_range(std::string_view from_text, std::string_view rest, std::vector<st
     const double steps = std::floor(std::abs(*to - *from) / *step + slack);
     if (!(steps < static_cast<double>(most_tasks))) return false;
     for (double i = 0; i <= steps; ++i)
-        values.push_back(short_text(*from + (*to < *from ? -i : i) * *step));
+        values.push_back(short_text(*from + (*to < *from ? -i : i) * *step, *step));
     return true;
 }
 

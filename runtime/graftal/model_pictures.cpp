@@ -164,8 +164,8 @@ Result<Drawn> Model::export_to(const std::string& path, const ExportSettings& se
                                           .metadata = {}}};
         const Stopwatch watch;
         if (!format) {
-            std::string vain = vain_plant_wish(*plant, options.file, false);
-            if (!vain.empty()) return fail(std::move(vain));
+            std::string problem = refusal_of_plant_options(*plant, options.file, false);
+            if (!problem.empty()) return fail(std::move(problem));
             const PlantLightOptions light = parts_->light_options(PlantLightOptions().most_samples);
             if (!export_plant(parts_->session, parts_->options, *plant, options.file,
                               settings.irradiance ? &light : nullptr, compilation))

@@ -10,8 +10,8 @@
 
 namespace graftal {
 
-// PNG files, by libpng; image.h is the interface to use. Each function returns what went wrong, in words, or
-// "".
+// PNG files, by libpng; image.h is the interface to use. Readers and writers return what went wrong, in
+// words, or "".
 //
 // OpenImageIO could write them too, but to load it costs more than a small picture: `render pound_sign.rifs
 // --engine native --steps 2 --size 64x36 --threads 1` took 0.035 s of the processor and 9 MiB by libpng, and

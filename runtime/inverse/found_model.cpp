@@ -116,10 +116,12 @@ std::string text_of(const FoundModel& found, const TargetPicture& picture, const
         "#   {}\n"
         "# Intersection over union: {:.3f}, within one cell {:.3f}. A cell is {} pixel{} wide.\n"
         "# Chamfer distance {:.2f} cells. Contractivity {:.4f}. Bound by the collage theorem: {:.1f} cells.\n"
+        "# The camera shows the frame of the target: draw with --size {}x{}.\n"
         "rifs found {{\n  codes 2d {{\n    #    a b c d e f p\n",
         found.maps.size(), found.maps.size() == 1 ? "" : "s", name, picture.width, picture.height,
         options.made_by, found.agreement.strict, found.agreement.tolerant, shortest(found.cell),
-        found.cell == 1 ? "" : "s", found.agreement.chamfer, found.contractivity, found.bound);
+        found.cell == 1 ? "" : "s", found.agreement.chamfer, found.contractivity, found.bound, picture.width,
+        picture.height);
     const auto level = [](double value) { return shortest(std::round(1000 * value) / 1000); };
     const std::vector<double> chances = probabilities(found.maps);
     for (std::size_t i = 0; i < found.maps.size(); ++i) {

@@ -139,7 +139,8 @@ struct LanguageServer::OpenText {
     std::int64_t version = 0;
     Document document;
     PictureSession session;
-    std::shared_ptr<const AnalysedModel> model; ///< as the text last was without errors; null: none was
+    std::shared_ptr<const AnalysedModel>
+        model; ///< of the text as it is now; null: not looked at, or with errors
     bool to_look_at = true;
 };
 

@@ -66,8 +66,7 @@ std::uint8_t byte_of(double linear) {
     static const std::vector<std::uint8_t> table = [] {
         std::vector<std::uint8_t> levels;
         for (int i = 0; i <= 4095; ++i)
-            levels.push_back(
-                static_cast<std::uint8_t>(255 * srgb_encoded(static_cast<float>(i) / 4095) + 0.5f));
+            levels.push_back(level8_of(srgb_encoded(static_cast<float>(i) / 4095)));
         return levels;
     }();
     const double level = linear > 0 ? std::min(linear, 1.0) * 4095 + 0.5 : 0;

@@ -117,6 +117,19 @@ TEST_F(CommandLine, OrbitsAreForPointsOnly) {
     EXPECT_EQ(files(), "");
 }
 
+TEST_F(CommandLine, FunctionsOfOrbitsReadTheConstantsOfTheBlock) {
+    write("a.rifs",
+          "orbit o { let a = 2  g(t) = a*t/9  map { let a = 10*x  x = g(y) + a/40  y = 1 - x } }\n");
+    write("b.rifs",
+          "orbit o { let a = 2  g(t) = a*t/9  map { let b = 10*x  x = g(y) + b/40  y = 1 - x } }\n");
+    for (const char* const name : {"a", "b"})
+        ASSERT_EQ(
+            graftal(fmt::format("points {0}.rifs -o {0}.png --points 1e4 -q --size 64x64", name)).status, 0);
+    EXPECT_EQ(graftal("compare a.png b.png").out, graftal("compare a.png a.png").out);
+    write("c.rifs", "orbit o { g(t, t) = t  x = g(x, y)/2  y = 0 }\n");
+    EXPECT_THAT(graftal("points c.rifs").err, HasSubstr("'g' has two parameters 't'"));
+}
+
 TEST_F(CommandLine, Collage) {
     ASSERT_EQ(graftal("points " + fern + " --size 200x200 --points 1e6 --transparent -o t.png -q").status, 0);
     const RunResult text = graftal("collage t.png " + fern + " --threshold 0.01");

@@ -121,6 +121,11 @@ TEST_F(WithEnvironment, CloudsAreTheSameInBothEnginesAndPrint) {
     EXPECT_EQ(graftal("print again.inst").out, printed.out);
 }
 
+TEST_F(WithEnvironment, AClearSkyWithoutBrightnessIsBlack) {
+    write("a.inst", "light { sun: 1, 1, 1 }\nsky { clear: 3  brightness: 0 }\nobject a { sphere }\n");
+    expect_engines_agree(0.2);
+}
+
 TEST_F(WithEnvironment, ACompiledSceneHasItBesideIt) {
     ASSERT_EQ(graftal("compile a.inst -o scene.pov").status, 0);
     EXPECT_EQ(files(), "a.inst scene.pov scene_sky.exr sky.exr");

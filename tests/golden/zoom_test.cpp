@@ -95,6 +95,18 @@ TEST_F(Zoom, AmongCrushedMapsItEnds) {
     EXPECT_THAT(result.err, HasSubstr("zoom in less"));
 }
 
+/// Of a map that crushes to a line and turns it aside, the second power is a point.
+TEST_F(Zoom, LeavesOutWhatIsCrushedToAPoint) {
+    write("m.rifs", "rifs m {\n  codes 2d {\n    0 0 0.5 0    0 0\n    0.5 0 0 0.5  0.2 0.2\n    0.5 0 0 0.5 "
+                    " -0.2 0.2\n  }\n}\n");
+    for (const char* const zoom : {"4", "40", "400"}) {
+        const RunResult result =
+            graftal(fmt::format("compile m.rifs --at w1 --steps 12 --size 64x36 --zoom {} -o a.pov", zoom));
+        EXPECT_TRUE(result.status == 0 || result.status == 1) << result.err;
+        EXPECT_THAT(result.err, ::testing::Not(HasSubstr("internal error")));
+    }
+}
+
 TEST_F(Zoom, NearerIsDeeper) {
     const RunResult result =
         graftal("compile " + gasket + "--at '(up)*' --zoom 1e1000 --size 320x200 -o a.pov");

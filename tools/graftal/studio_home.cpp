@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include "compiler/import/importers.h"
+#include "compiler/languages/languages.h"
 #include "compiler/support/check.h"
 #include "compiler/support/text_encoding.h"
 #include "runtime/export/export_model.h"
@@ -97,7 +98,9 @@ bool may_write(const std::string& path) {
 }
 
 bool is_model_ending(std::string_view ending) {
-    return ending == ".lsys" || ending == ".rifs" || ending == ".inst";
+    return std::ranges::any_of(languages(), [&](const Language& language) {
+        return ending.starts_with('.') && ending.substr(1) == language.extension;
+    });
 }
 
 /// Does what the command line does with the job's words, over the texts of the page.

@@ -7,7 +7,7 @@ namespace graftal {
 
 namespace {
 
-/// More of them make no difference to what they are for.
+/// Coverage is a mean over them (shadow/coverage.h), which more do not change.
 constexpr std::size_t most_symmetries = 96;
 
 bool agree(const Affine& a, const Affine& b, double size) {

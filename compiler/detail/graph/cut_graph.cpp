@@ -78,7 +78,8 @@ std::vector<NodeId> masters_first(const CutGraph& cut) {
 void set_mean_colours(CutGraph& cut) {
     settle(cut, 48, 1e-7, [&](NodeId id) {
         const MeanColour before = std::exchange(cut.nodes[id].mean, mean_of(cut, cut.nodes[id]));
-        return glm::length(cut.nodes[id].mean.fixed - before.fixed);
+        const MeanColour& mean = cut.nodes[id].mean;
+        return std::max(glm::length(mean.fixed - before.fixed), std::abs(mean.open - before.open));
     });
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Limits for cells, as cut_graph.cpp has them for other objects.
+/// Limits for cells, as build_cut_graph.cpp has them for other objects.
 constexpr std::size_t uncullable_leaves_of_cell = 16;
 constexpr double thinnest_proxy_of_cell = 0.02;
 

@@ -31,7 +31,7 @@ CellEdge edge_to_body(const CellSource& source, const RunItem& item);
 CellEdge edge_to_ball(const CellSource& source, const RunItem& item);
 
 /// The mean over all directions of an item's shadow, its ball's with it: a quarter of the surface of a convex
-/// body. Of a cylinder half of whose balls are seen.
+/// body. A cylinder with a ball counts as if half a ball lay at each end.
 double mean_shadow(const RunItem& item);
 
 /// Edges to the parts of a range of items, each made where it is looked at.

@@ -6,9 +6,9 @@
 
 namespace graftal {
 
-/// Finds what each node has by what its edges lead to, also where these lead back to it. `update(id)` takes
-/// it from the edges, and says by how much it changed. It is called on every node with edges, masters first,
-/// up to `sweeps` times, until none changes by `enough`.
+/// Computes a value of each node from those of its children, on cycles too. `update(id)` computes it anew,
+/// and says by how much it changed. It is called on every node with edges, masters first, up to `sweeps`
+/// times, until none changes by `enough`.
 template<typename Update> void settle(const CutGraph& cut, int sweeps, double enough, const Update& update) {
     const std::vector<NodeId> order = masters_first(cut);
     for (int sweep = 0; sweep < sweeps; ++sweep) {

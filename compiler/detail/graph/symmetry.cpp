@@ -77,7 +77,7 @@ class Finder {
         return static_cast<std::size_t>(primitive.kind()) * frustum_steps + primitive.steps();
     }
 
-    /// Equal for congruent nodes. Balls are not: the search for them is no more symmetric than it must be.
+    /// Equal for congruent nodes. Their balls may differ, so sizes of balls are not in it.
     std::tuple<std::size_t, long long, long long> signature(NodeId id) const {
         const CutNode& node = cut_.nodes[id];
         const auto rounded = [](double x) { return std::llround(std::log(std::max(x, 1e-300)) * 1e6); };
@@ -125,10 +125,9 @@ class Finder {
 Symmetry find_symmetry(CutGraph& cut) {
     Symmetry symmetry = Finder(cut).run();
     // One ball a class, its smallest: congruent pieces then end at the same size.
-    const auto take_smaller = [&](NodeId to, NodeId from, const Affine& to_from_from) {
-        const Ball& ball = cut.nodes[from].ball;
-        if (ball.radius < cut.nodes[to].ball.radius)
-            cut.nodes[to].ball = {to_from_from(ball.centre), ball.radius};
+    const auto take_smaller = [&](NodeId a, NodeId b, const Affine& a_from_b) {
+        const Ball& ball = cut.nodes[b].ball;
+        if (ball.radius < cut.nodes[a].ball.radius) cut.nodes[a].ball = {a_from_b(ball.centre), ball.radius};
     };
     for (NodeId id = 0; id < cut.nodes.size(); ++id)
         take_smaller(symmetry.representative[id], id, inverse(symmetry.node_from_representative[id]));

@@ -75,7 +75,7 @@ void FacetSet::add(const Facet& facet) {
     }
     Facet& other = facets_[id];
     const bool back_to_back = turns_to_smaller(facet.corners) != turns_to_smaller(other.corners);
-    if (facet.solid && other.solid && back_to_back && !other.hidden) {
+    if (facet.solid && other.solid && facet.leaf != other.leaf && back_to_back && !other.hidden) {
         other.hidden = true;
         triangle_count_ -= facet.triangle_count();
     }

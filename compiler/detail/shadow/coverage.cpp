@@ -271,7 +271,8 @@ class Fitter {
                 for (const auto& [child, factor] : factors[i])
                     next[i] += factor * area[child];
             }
-            growth = *std::max_element(next.begin(), next.end());
+            const double before = std::exchange(growth, *std::max_element(next.begin(), next.end()));
+            if (std::abs(growth - before) < 1e-12 * growth && step > 20) break;
             for (std::size_t i = 0; i < roots_.size(); ++i)
                 area[i] = next[i] / growth;
         }

@@ -80,7 +80,8 @@ void set_lit_colours(CutGraph& cut) {
         if (cut.nodes[id].cell) lit[id] = lit_of_cell(cut, *cut.nodes[id].cell);
     settle(cut, 48, 1e-7, [&](NodeId id) {
         const Lit before = std::exchange(lit[id], lit_of(cut, cut.nodes[id], lit));
-        return glm::length(lit[id].known - before.known);
+        return std::max({glm::length(lit[id].known - before.known), glm::length(lit[id].fixed - before.fixed),
+                         std::abs(lit[id].open - before.open)});
     });
     for (NodeId id = 0; id < cut.nodes.size(); ++id) {
         CutNode& node = cut.nodes[id];

@@ -17,8 +17,9 @@ constexpr int most_nested_blocks = 64;
 
 class BlockReader {
   public:
-    BlockReader(std::string_view text, Span span, CpfgNames& names)
-        : text_(text), span_(span), names_(names) {}
+    /// `expands`: macros may stand for statements.
+    BlockReader(std::string_view text, Span span, CpfgNames& names, bool expands = true)
+        : text_(text), span_(span), names_(names), expands_(expands) {}
 
     std::optional<CpfgBlock> read() {
         CpfgBlock block;
@@ -121,6 +122,12 @@ class BlockReader {
         return trimmed(text_.substr(begin, at_ - begin));
     }
 
+    void read_macro(std::string_view written, CpfgBlock& block) {
+        const std::optional<CpfgBlock> inner = BlockReader(written, span_, names_, false).read();
+        good_ = good_ && inner.has_value();
+        if (inner) block.insert(block.end(), inner->begin(), inner->end());
+    }
+
     void read_simple(CpfgBlock& block) {
         const std::string name(word());
         const std::string_view text = simple_text();
@@ -137,7 +144,11 @@ class BlockReader {
                              !text.substr(equal).starts_with("==") && text[equal - 1] != '!';
         constexpr std::array known_to_act = {"stop", "SetDerivationLength", "Display", "fscanf"};
         const bool acts = std::ranges::find(known_to_act, name) != known_to_act.end();
-        if (!assigns && !acts && equal == std::string_view::npos)
+        const bool says_nothing = !assigns && !acts && equal == std::string_view::npos;
+        if (says_nothing && expands_)
+            if (const std::string written = names_.expanded(text, span_, false); written != text)
+                return read_macro(written, block);
+        if (says_nothing)
             return names_.warn_once(span_,
                                     fmt::format("'{}' changes nothing, and is left out", comment_text(text)));
         if (!assigns)
@@ -156,6 +167,7 @@ class BlockReader {
     std::string_view text_;
     Span span_;
     CpfgNames& names_;
+    bool expands_;
     std::size_t at_ = 0;
     bool good_ = true;
 };

@@ -41,8 +41,6 @@ class ConditionReader {
     }
 
     double level(std::size_t precedence, int depth) {
-        if (depth > most_nested_conditions) good_ = false;
-        if (!good_) return 0;
         if (precedence == operators.size()) return unary(depth);
         double left = level(precedence + 1, depth);
         for (bool found = true; found && good_;) {
@@ -50,7 +48,10 @@ class ConditionReader {
             for (const std::string_view op : operators[precedence])
                 if (!found && accept(op)) {
                     found = true;
+                    const bool decided = (op == "||" && left != 0) || (op == "&&" && left == 0);
+                    unread_ += decided ? 1 : 0;
                     left = combined(op, left, level(precedence + 1, depth));
+                    unread_ -= decided ? 1 : 0;
                 }
         }
         return left;
@@ -68,8 +69,9 @@ class ConditionReader {
         if (op == "+") return a + b;
         if (op == "-") return a - b;
         if (op == "*") return a * b;
-        good_ = good_ && b != 0;
-        return !good_ ? 0 : op == "/" ? a / b : std::fmod(a, b);
+        if (b != 0) return op == "/" ? a / b : std::fmod(a, b);
+        good_ = good_ && unread_ > 0;
+        return 0;
     }
 
     double unary(int depth) {
@@ -96,6 +98,7 @@ class ConditionReader {
     std::string_view text_;
     std::size_t at_ = 0;
     bool good_ = true;
+    int unread_ = 0; ///< right sides, one in the other, whose value C would not ask for
 };
 
 } // namespace

@@ -49,13 +49,18 @@ struct Surface {
     std::vector<Span> places;
 };
 
+/// The first word of a line, without the colon after it.
+std::string_view first_word(std::string_view words) {
+    return words.substr(0, words.find_first_of(": \t"));
+}
+
 /// A patch begins with its name; the other words of the format are known.
 bool begins_patch(std::string_view words) {
     constexpr std::array<std::string_view, 9> others = {"PRECISION", "CONTACT", "END", "HEADING", "UP",
                                                         "SIZE",      "TOP",     "AL",  "BL"};
     if (words.empty() || !std::isalpha(static_cast<unsigned char>(words[0])) || words.starts_with("L:"))
         return false;
-    return std::ranges::none_of(others, [&](std::string_view word) { return words.starts_with(word); });
+    return std::ranges::find(others, first_word(words)) == others.end();
 }
 
 Surface read_surface(const ForeignFile& file) {
@@ -66,10 +71,11 @@ Surface read_surface(const ForeignFile& file) {
         const auto point = [&](Point& to) {
             if (numbers.size() == 3) to = {numbers[0], numbers[1], numbers[2]};
         };
-        if (words.starts_with("CONTACT")) point(surface.contact);
-        if (words.starts_with("HEADING")) point(surface.heading);
-        if (words.starts_with("UP")) point(surface.up);
-        if (words.starts_with("SIZE") && !numbers.empty() && numbers[0] > 0) surface.size = numbers[0];
+        const std::string_view word = first_word(words);
+        if (word == "CONTACT") point(surface.contact);
+        if (word == "HEADING") point(surface.heading);
+        if (word == "UP") point(surface.up);
+        if (word == "SIZE" && !numbers.empty() && numbers[0] > 0) surface.size = numbers[0];
         if (begins_patch(words)) {
             if (surface.patches.size() == most_patches) {
                 file.diagnostics.error(file.span(line.begin, line.begin + line.text.size()),
@@ -102,8 +108,8 @@ Point of_unit_length(const Point& a) {
     return length > 0 ? Point{a[0] / length, a[1] / length, a[2] / length} : a;
 }
 
-/// The surface in the frame of a turtle that takes hold of it: x right, y ahead, z up. A turtle of cpfg
-/// looks along its own heading and up, and has its left at heading x up: its up is our down.
+/// The surface in the frame of a turtle that takes hold of it: x right, y ahead, z up. The left of cpfg's
+/// turtle is heading x up, which of ours would be the right. So x is -left, y the heading, and z -up.
 std::optional<Translation> translate_surface(const ForeignFile& file, const ForeignModel& model) {
     const Surface surface = read_surface(file);
     const Point heading = of_unit_length(surface.heading);

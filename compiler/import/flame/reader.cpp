@@ -32,6 +32,12 @@ std::vector<double> numbers_in(std::string_view text, bool* all = nullptr) {
     }
 }
 
+/// The number of an attribute; `fallback` where it is missing or none.
+double number_of(const pugi::xml_attribute& attribute, double fallback) {
+    const std::vector<double> numbers = numbers_in(attribute.value());
+    return numbers.size() == 1 && parse_number(trimmed(attribute.value())) ? numbers[0] : fallback;
+}
+
 /// Fractorium and the plugins of Apophysis have some variations and numbers by other names.
 std::string name_in_flam3(std::string name) {
     if (name.starts_with("Mobius")) return in_small_letters(name);
@@ -122,11 +128,10 @@ std::optional<Flame> Reader::read(const pugi::xml_node& node) {
     const std::vector<double> size = numbers_in(node.attribute("size").value());
     if (size.size() == 2) flame.width = size[0];
     // JWildfire enlarges by a factor, flam3 by a power of two.
-    const double factor = node.attribute("cam_zoom").as_double(1);
-    flame.scale = node.attribute("scale").as_double() * (factor > 0 && std::isfinite(factor) ? factor : 1) *
-                  std::exp2(std::clamp(node.attribute("zoom").as_double(), -100.0, 100.0));
-    flame.rotate = node.attribute("rotate").as_double();
-    if (!std::isfinite(flame.rotate)) flame.rotate = 0;
+    const double factor = number_of(node.attribute("cam_zoom"), 1);
+    flame.scale = number_of(node.attribute("scale"), 0) * (factor > 0 ? factor : 1) *
+                  std::exp2(std::clamp(number_of(node.attribute("zoom"), 0), -100.0, 100.0));
+    flame.rotate = number_of(node.attribute("rotate"), 0);
     const std::vector<double> background = numbers_in(node.attribute("background").value());
     if (background.size() == 3)
         for (std::size_t i = 0; i < 3; ++i)
@@ -224,16 +229,14 @@ Map Reader::read_map(const pugi::xml_node& node) {
     map.span = span(node);
     map.pre = coefficients(node.attribute("coefs"), map.span);
     map.post = coefficients(node.attribute("post"), map.span);
-    map.weight = node.attribute("weight").as_double(node.attribute("density").as_double(0));
+    map.weight = number_of(node.attribute("weight"), number_of(node.attribute("density"), 0));
     map.weight = std::clamp(map.weight, 0.0, 1e6);
-    map.colour = std::clamp(numbers_in(node.attribute("color").value()).empty()
-                                ? 0.0
-                                : numbers_in(node.attribute("color").value())[0],
-                            0.0, 1.0);
-    if (node.attribute("symmetry")) map.speed = (1 - node.attribute("symmetry").as_double()) / 2;
-    if (node.attribute("color_speed")) map.speed = node.attribute("color_speed").as_double(0.5);
+    const std::vector<double> colour = numbers_in(node.attribute("color").value()); // flam3 had two once
+    map.colour = std::clamp(colour.empty() ? 0.0 : colour[0], 0.0, 1.0);
+    if (node.attribute("symmetry")) map.speed = (1 - number_of(node.attribute("symmetry"), 0)) / 2;
+    if (node.attribute("color_speed")) map.speed = number_of(node.attribute("color_speed"), 0.5);
     map.speed = std::clamp(map.speed, 0.0, 1.0);
-    map.opacity = node.attribute("opacity").as_double(1);
+    map.opacity = number_of(node.attribute("opacity"), 1);
     bool all = true;
     map.chaos = numbers_in(node.attribute("chaos").value(), &all);
     if (!all) file_.diagnostics.error(map.span, "'chaos' takes numbers, one for each map");
@@ -276,13 +279,14 @@ void Reader::read_variations(const pugi::xml_node& node, Map& map) {
             leave_out(map.span, name);
         }
     }
-    // Variations that no file of flam3 has may have numbers of any name: these stand or fall with them.
+    // An unknown name with a '_' may be a number of an unknown variation: it is reported only where there is
+    // no other.
     const auto is_whole = [](std::string_view name) { return name.find('_') == std::string_view::npos; };
     const bool some_whole = std::ranges::any_of(unknown, is_whole);
     for (const std::string& name : unknown)
         if (!some_whole || is_whole(name)) fail(fmt::format("the variation '{}' is not translated", name));
     read_old_variations(node, map);
-    // A map that only flattens makes the one point; one that names no variation is linear.
+    // A map that only flattens makes the one point; one with coefficients and no variation is linear.
     if (map.variations.empty() && !node.attribute("coefs").empty())
         map.variations.emplace_back("linear", flat ? 0 : 1);
 }

@@ -148,7 +148,8 @@ class LpyExpression {
             else if (take("*"))
                 value += "*" + factor();
             else if (take("%"))
-                value = fmt::format("mod({}, {})", value, factor());
+                value = fmt::format("mod(mod({0}, {1}) + ({1}), {1})", value,
+                                    factor()); // Python's has the sign of the divisor
             else
                 return checked(std::move(value));
             skip();

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/cpfg/block.h"
 #include "compiler/import/cpfg/expression.h"
 #include "compiler/import/cpfg/names.h"
 #include "compiler/import/foreign_text.h"
@@ -181,7 +182,7 @@ class LpyReader {
         if (turns(line) || text.empty()) return;
         if (text.starts_with("module ")) return strings_.declare(text.substr(7));
         if (word == "import" || word == "from") return python_.add_import(text);
-        if (text.starts_with("extern")) return read_extern(line);
+        if (word == "extern") return read_extern(line);
         if (text.starts_with("def ")) {
             if (!moment_of(text)) python_.add_function(line);
             return;
@@ -262,7 +263,7 @@ class LpyReader {
         LpyValues values;
         bool good = true;
         quiet_ = &good;
-        const std::optional<CpfgBlock> block = block_of(line.below, globals, values, true);
+        const std::optional<CpfgBlock> block = block_of(line.below, globals, values);
         quiet_ = nullptr;
         if (good && block) {
             moments_.push_back({*moment, *block, line.span});
@@ -277,12 +278,13 @@ class LpyReader {
     }
 
     std::optional<CpfgBlock> block_of(const std::vector<LpyLine>& lines, std::set<std::string>& globals,
-                                      LpyValues& values, bool outermost) {
+                                      LpyValues& values) {
         CpfgBlock block;
         for (std::size_t i = 0; i < lines.size(); ++i) {
             const LpyLine& line = lines[i];
             const std::string_view text = line.text, word = word_of(text);
-            if (text.starts_with('"') || word == "pass" || word == "print") continue;
+            if (text.starts_with('"') || text.starts_with('\'') || word == "pass" || word == "print")
+                continue;
             if (word == "global") {
                 std::string_view names = text.substr(6);
                 while (!trimmed(names).empty()) {
@@ -294,13 +296,16 @@ class LpyReader {
                 const auto& [name, value] = all->front();
                 std::string own = python_.expression(value, line.span, values);
                 if (globals.contains(name)) {
+                    // Locals are written out where they are read, which would read the new value.
+                    for (const auto& [local, text_of_local] : values)
+                        if (names_any(text_of_local,
+                                      [&](std::string_view read) { return read == lpy_own_name(name); }))
+                            return std::nullopt;
                     CpfgAction& action = block.emplace_back();
                     action.name = action.target = lpy_own_name(name);
                     action.value = std::move(own);
-                } else if (outermost) {
-                    values.insert_or_assign(name, "(" + own + ")");
                 } else {
-                    return std::nullopt;
+                    values.insert_or_assign(name, "(" + own + ")");
                 }
             } else {
                 return std::nullopt;

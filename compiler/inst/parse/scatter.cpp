@@ -85,23 +85,25 @@ class LineParser {
     bool parse_turn(const Token& keyword) {
         const Token axis = stream_.peek();
         const bool named = axis.is("x") || axis.is("y") || axis.is("z");
+        bool has_comma = false;
         if (named) {
             stream_.next();
             scatter_.turn_axis = axis.text[0] - 'x';
-            stream_.accept(",");
+            has_comma = stream_.accept(",");
         }
-        if (!named || begins_value()) return parse_range(scatter_.turn, keyword);
+        if (!named || has_comma || begins_value()) return parse_range(scatter_.turn, keyword);
         refuse_twice(scatter_.turn.has_value(), keyword.span, "turn");
         scatter_.turn.emplace().span = stream_.span_from(keyword.span);
         scatter_.turn->to.emplace().number = 360;
         return true;
     }
 
-    /// Whether a value follows `turn: y`: another line may go on behind it instead.
+    /// Whether a value follows `turn: y`: another line may follow instead, and a number alone is the count.
     bool begins_value() const {
         const Token& token = stream_.peek();
+        if (token.first_on_line) return false;
         if (token.kind == TokenKind::number || token.is("-") || token.is("+") || token.is("(")) return true;
-        if (token.kind != TokenKind::name || token.first_on_line) return false;
+        if (token.kind != TokenKind::name) return false;
         return !at_scatter_line(stream_) && !stream_.peek(1).is(":");
     }
 

@@ -269,7 +269,7 @@ class BlockParser {
 
     bool finish_string(LsysStringReader& reader) {
         if (reader.at_end()) return true;
-        const bool arrow = reader.at_arrow() > 0;
+        const bool arrow = reader.arrow_size() > 0;
         Diagnostic& error = reader.expected("a module or the end of the line");
         if (arrow) error.with_hint("write every statement and every production on its own line, without ';'");
         return false;

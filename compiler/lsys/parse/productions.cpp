@@ -153,7 +153,7 @@ class ProductionParser {
                                            : "rewrite several modules at once in a derivation step");
             return false;
         }
-        if (modules.back().symbol == "-" && reader_.at_arrow() > 0 && reader_.position() == span.end) {
+        if (modules.back().symbol == "-" && reader_.arrow_size() > 0 && reader_.position() == span.end) {
             diagnostics_.error(span, "this arrow has too many signs")
                 .with_hint("write a blank between the module '-' and the arrow");
             return false;
@@ -297,7 +297,7 @@ class ProductionParser {
     }
 
     bool parse_arrow() {
-        const std::size_t size = reader_.at_arrow();
+        const std::size_t size = reader_.arrow_size();
         if (size == 0) {
             Diagnostic& error = reader_.expected("'->'");
             if (reader_.accept('<'))
@@ -321,7 +321,7 @@ class ProductionParser {
         }
         if (!good || reader_.at_end()) return good;
         Diagnostic& error = reader_.expected("a module or the end of the line");
-        if (reader_.at_arrow() > 0)
+        if (reader_.arrow_size() > 0)
             error.with_hint("write every production on its own line");
         else if (reader_.accept('*'))
             error.with_hint("write '*' alone, for the empty string");

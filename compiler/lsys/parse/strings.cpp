@@ -92,7 +92,7 @@ std::size_t LsysStringReader::position() {
     return at_;
 }
 
-std::size_t LsysStringReader::at_arrow() {
+std::size_t LsysStringReader::arrow_size() {
     position();
     return lsys_arrow_size(rest());
 }
@@ -108,7 +108,7 @@ Diagnostic& LsysStringReader::expected(std::string_view what) {
 }
 
 bool LsysStringReader::more() {
-    return !at_end() && at_arrow() == 0 &&
+    return !at_end() && arrow_size() == 0 &&
            std::string_view("<>:*").find(scanner_.text()[at_]) == std::string_view::npos;
 }
 
@@ -313,7 +313,7 @@ bool LsysStringReader::read_names(const Raw& raw, std::vector<Name>& names) {
     do {
         const bool number = stream.peek().kind == TokenKind::number;
         if (number) {
-            const bool probability = raw.symbol == "-" && at_arrow() > 0;
+            const bool probability = raw.symbol == "-" && arrow_size() > 0;
             stream.expected("the name of a parameter")
                 .with_hint(
                     probability

@@ -39,7 +39,7 @@ struct LsysText {
     std::optional<Span> open_polygon;
     std::optional<Span> closed_polygon;
     bool stray_brace_said = false; ///< a '}' that may have been meant to close the block was reported
-    std::size_t lost_braces = 0;   ///< '{' of statements that are none, whose '}' is left over
+    std::size_t lost_braces = 0;   ///< '{' at the ends of lines that were refused: so many '}' are skipped
 
     /// Reports, at the end of a block, polygons that never end, or that never began.
     void check_polygons();
@@ -71,7 +71,8 @@ class LsysStringReader {
     /// The place of the next character that counts, past blanks and comments.
     std::size_t position();
     bool at_end() { return position() >= end_; }
-    std::size_t at_arrow();
+    /// Bytes of the arrow that stands here; 0: none does.
+    std::size_t arrow_size();
     bool accept(char c);
     void move_to(std::size_t place) { at_ = place; }
     /// Reports "expected WHAT, found ..." at the next character.

@@ -64,7 +64,11 @@ std::string palette_pigment(const Palette& palette, const std::string& file_name
 }
 
 std::string clear_image(const std::string& clear) {
-    return clear.empty() ? clear : std::string(clear).insert(clear.find(' '), " all") + " ";
+    std::string text = clear;
+    for (const std::string_view word : {"filter", "transmit"})
+        if (const std::size_t at = text.find(word); at != std::string::npos)
+            text.insert(at + word.size(), " all");
+    return text.empty() ? text : text + " ";
 }
 
 PaletteImage palette_image(const Palette& palette, std::string file_name) {

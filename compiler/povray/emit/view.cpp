@@ -123,6 +123,10 @@ void write_clear_sky(SdlWriter& out, const SkyLight& sky) {
     for (int i = 0; i < 3; ++i)
         write_perez(out, names[i], clear.perez[static_cast<std::size_t>(i)], clear.zenith_yxy[i]);
     const double most = brightest(sky);
+    if (!(most > 0)) {
+        out << "background { rgb 0 }\n";
+        return;
+    }
     const double scale = sky.brightness / ClearSky::kcd_of_paper / most;
     out << "sky_sphere { pigment { average pigment_map {\n";
     for (int component = 0; component < 3; ++component) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "compiler/support/check.h"
+
 namespace graftal {
 
 /// Walks the tree of a code, operands first.
@@ -65,7 +67,7 @@ class ExpressionCode::StepWriter {
                                          std::pair(chance_functions(), ExpressionStep::chances)})
             for (std::size_t i = 0; i < all.size(); ++i)
                 if (&all[i] == &function) return first + static_cast<std::uint32_t>(i);
-        return ExpressionStep::copy;
+        GRAFTAL_CHECK(false, "a function that is in no table");
     }
 
     /// Operands that there are not are as the first.

@@ -13,6 +13,7 @@ struct ExpressionStep {
     /// Binary operators and functions have numbers of their own, in the order of BinaryOperator,
     /// expression_functions() and chance_functions().
     enum Operation : std::uint32_t { copy = 14, negate, invert, draw, table, functions = 20, chances = 60 };
+    static_assert(copy == static_cast<std::uint32_t>(BinaryOperator::logical_or) + 1);
 
     std::uint32_t operation = 0;
     std::uint32_t result = 0; ///< slot

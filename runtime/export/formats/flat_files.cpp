@@ -80,8 +80,7 @@ Status for_each_leaf(const ExportJob& job, OutputFile& file,
 std::array<std::uint8_t, 3> srgb_bytes(Rgb linear) {
     std::array<std::uint8_t, 3> bytes{};
     for (int i = 0; i < 3; ++i)
-        bytes[static_cast<std::size_t>(i)] =
-            static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(static_cast<float>(linear[i]))));
+        bytes[static_cast<std::size_t>(i)] = level8_of(srgb_encoded(static_cast<float>(linear[i])));
     return bytes;
 }
 

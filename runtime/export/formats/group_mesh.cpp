@@ -42,7 +42,7 @@ std::vector<GroupSurface> surfaces_of(const UnfoldedScene& scene, SceneId node, 
         for (std::size_t i = 0; i < placed.mesh->vertices.size(); ++i) {
             surface.vertices.push_back(floats(placed.vertex(i)));
             surface.normals.push_back(floats(placed.normal(i)));
-            if (coloured && !(own && i + first > 0)) surface.colours.push_back(colour);
+            if (coloured && (!own || surface.colours.empty())) surface.colours.push_back(colour);
         }
         for (const auto& uv : placed.mesh->uv)
             surface.uv.push_back({static_cast<float>(uv[0]), static_cast<float>(uv[1])});

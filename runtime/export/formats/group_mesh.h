@@ -14,7 +14,7 @@ struct GroupSurface {
     bool coloured = false; ///< by vertex, in place of the material's own colour
     std::vector<std::array<float, 3>> vertices, normals;
     std::vector<std::array<float, 2>> uv; ///< empty, or one a vertex; v upwards
-    std::vector<Rgb> colours;             ///< linear; of what is coloured one a vertex
+    std::vector<Rgb> colours;             ///< linear; one a vertex, or a single one (ColoursOf::surfaces)
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 

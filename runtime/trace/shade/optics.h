@@ -12,7 +12,8 @@ namespace graftal {
 /// it. (POV-Ray's trace.cpp: ComputeRelativeIOR, ComputeRefraction, ComputeShadowMedia.)
 class Inside {
   public:
-    /// Index of the solid at a surface over that of the solid that the ray is in, before it crosses.
+    /// On the way in, the surface's index over that of the solid entered last. On the way out, that of the
+    /// solid entered last over the surface's, even where both are one, as in POV-Ray; 1 stands for no solid.
     double relative_ior(const Interior& interior) const;
     /// Crosses a surface; gives the index on this side over the one on the other. Beyond eight solids in each
     /// other it keeps to those it is in.

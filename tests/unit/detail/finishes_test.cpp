@@ -86,6 +86,18 @@ TEST_F(Finishes, ColoursCountByTheLightThatTheyScatter) {
     EXPECT_NEAR(cut.nodes[twig].mean.fixed.r, 0.2, 1e-9) << "the pigment's mean stays what it was";
 }
 
+// Found by reading: no colour of a black fractal changes from sweep to sweep, and its openness was left at
+// once.
+TEST_F(Finishes, OfBlackCyclesInheritNothing) {
+    cut.materials[bark] = {.rgb = {0, 0, 0}};
+    const NodeId bough = add({{solid, 1, bark}});
+    cut.nodes[bough].edges.push_back({});
+    cut.nodes[bough].edges.back().child = bough;
+    cut.nodes[bough].edges.back().weight = 1;
+    set_mean_colours(cut);
+    EXPECT_LT(cut.nodes[bough].mean.open, 1e-6);
+}
+
 TEST_F(Finishes, OfCyclesAreThoseOfTheLimit) {
     // Two thirds of a bough are the bough again, of which a third is bark and two thirds are leaf in the end.
     const NodeId bough = add({{solid, 1, bark}, {solid, 2, leaf}});

@@ -57,6 +57,7 @@ TEST(Complete, SymbolsOfStrings) {
 
 TEST(Complete, NothingInCommentsAndQuotes) {
     EXPECT_EQ(offered("m.rifs", "rifs a { # co^\n }"), "");
+    EXPECT_EQ(offered("m.rifs", "rifs a { // co^\n }"), "");
     EXPECT_EQ(offered("m.rifs", "use a = \"co^\""), "");
     EXPECT_EQ(offered("m.txt", "rifs ^"), "");
     EXPECT_EQ(offered("m.inst", "let ^"), "");

@@ -167,6 +167,19 @@ TEST(Environment, PointsAttractUntilTheyAreReached) {
     EXPECT_GT(left, 100); // an eighth of the sphere's volume is gone
 }
 
+TEST(Environment, PointsAreGoneWithinReachThatIsLargerThanTheirInfluence) {
+    EnvironmentSettings settings{.kind = Kind::points};
+    settings.regions = {{.kind = EnvironmentRegion::Kind::sphere, .a = Vec3(0, 4, 0), .extent = 1}};
+    settings.point_count = 200;
+    settings.influence = 0.5;
+    settings.kill = 5.5;
+    Asked asked(settings, {{0, 0, 0}}, {0, 0, 0, 0});
+    asked.ask();
+    asked.places = {{0, 4, 0}};
+    asked.ask();
+    EXPECT_EQ(asked.values[0][0], 0) << "all lay within 5.5 of the first query";
+}
+
 TEST(Environment, PointsNeedRoom) {
     EnvironmentSettings settings{.kind = Kind::points};
     settings.regions = {{.kind = EnvironmentRegion::Kind::sphere, .a = Vec3(0), .extent = 1e-6},

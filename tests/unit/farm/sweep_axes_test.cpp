@@ -24,6 +24,10 @@ TEST(SweepAxes, RangesAndListsAreReadAsPeopleWriteThem) {
     EXPECT_THAT(values("k=-1..1"), ElementsAre("-1", "0", "1"));
     EXPECT_THAT(values("k=5"), ElementsAre("5"));
     EXPECT_THAT(values("a_1=0.10,2e3,-7"), ElementsAre("0.10", "2e3", "-7"));
+    EXPECT_THAT(values("k=1e-13..3e-13 by 1e-13"), ElementsAre("1e-13", "2e-13", "3e-13"));
+    EXPECT_THAT(values("k=-0.1..0.1 by 0.1"), ElementsAre("-0.1", "0", "0.1"));
+    EXPECT_THAT(values("seed=1000000000000..1000000000002"),
+                ElementsAre("1000000000000", "1000000000001", "1000000000002"));
     EXPECT_EQ(values("k=0..1 by 0.1").size(), 11u); // 0.1 ten times is not quite 1
     EXPECT_EQ(values("seed=1..100000").size(), most_tasks);
 }

@@ -151,6 +151,11 @@ TEST(Scatter, spiral_gives_each_as_much_room) {
     EXPECT_GT(least_distance(points), 0.4);
 }
 
+TEST(Scatter, a_number_on_a_line_of_its_own_is_the_count_also_after_an_axis) {
+    EXPECT_EQ(scattered("scatter: cube\nover: disc 9\nby: uniform\nturn: y\n40").size(), 40u);
+    EXPECT_EQ(scattered("scatter: cube\nover: disc 9\nby: uniform\ncount: 7\nturn: y,\n40").size(), 7u);
+}
+
 TEST(Scatter, turns_sizes_and_leans_stay_in_their_ranges_and_use_all_of_them) {
     const std::vector<Instance> found = scattered(
         "scatter: cube  count: 2000  over: disc 9  by: uniform  size: 0.5..2  turn: y, 30..90  lean: 0..10");

@@ -134,6 +134,7 @@ TEST(MeshFile, RefusesDamagedPly) {
     EXPECT_EQ(fault_of_mesh(start + "0 0 nan 0 0 1 0 0 1 0 0 1 0 0 1 3 0 1 2"),
               "byte " + std::to_string(start.size() + 8) + ": a coordinate is nan, and 1000000 is the most");
     EXPECT_THAT(fault_of_mesh(header("cuneiform")), HasSubstr("line 2: 'cuneiform' is no format"));
+    EXPECT_THAT(fault_of_mesh(header("binary_middle_endian")), HasSubstr("is no format"));
     EXPECT_THAT(fault_of_mesh("ply\nelement vertex x\n"), HasSubstr("no number of elements"));
     EXPECT_THAT(fault_of_mesh("ply\n"), HasSubstr("does not end"));
 }

@@ -170,7 +170,7 @@ TEST(SphereSweep, RefusesWhatIsNoSweep) {
     const PrimitiveKind kind = PrimitiveKind::sphere_sweep;
     EXPECT_THAT(fault_of(kind, {0, 0, 0, 1, 0, 1, 0, 1, 3}), HasSubstr("four numbers for each point"));
     EXPECT_THAT(fault_of(kind, {0, 0, 0, 1, 0, 0, 0, 2}), HasSubstr("are the same"));
-    EXPECT_THAT(fault_of(kind, {0, 0, 0, 0, 0, 1, 0, 0}), HasSubstr("all its radii are 0"));
+    EXPECT_THAT(fault_of(kind, {0, 0, 0, 0, 0, 1, 0, 0}), HasSubstr("its radii are too small"));
     EXPECT_THAT(fault_of(kind, {0, 0, 0, -1, 0, 1, 0, 1}), HasSubstr("between 0 and 1000, not -1"));
     EXPECT_THAT(fault_of(kind, {0, 0, 1e300, 1, 0, 1, 0, 1}), HasSubstr("not 1e+300"));
 }

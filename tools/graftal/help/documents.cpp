@@ -99,7 +99,7 @@ Documents::Documents(CLI::App& app) : app_(app) {
 std::optional<std::string> Documents::text() const {
     if (app_.got_subcommand("help")) {
         const CLI::App& command = command_named(app_, command_);
-        // App::help() would explain the command that was given, which is this one.
+        // CLI::App::help() would explain `graftal help` itself.
         return command.get_formatter()->make_help(
             &command, fmt::format("graftal{}{}", command_.empty() ? "" : " ", fmt::join(command_, " ")),
             CLI::AppFormatMode::Normal);

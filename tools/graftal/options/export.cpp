@@ -119,8 +119,8 @@ std::string complete_export(Options& options) {
             return fmt::format("'{}': the name must end in {}; {}", options.render.output, export_endings(),
                                plant_endings());
         const bool finds_parts = options.error_asked || options.render.compile.view.zoom.active();
-        const std::string vain = vain_plant_wish(*plant, options.file, finds_parts);
-        return vain.empty() ? "" : "--" + vain;
+        const std::string problem = refusal_of_plant_options(*plant, options.file, finds_parts);
+        return problem.empty() ? "" : "--" + problem;
     }
     if (options.irradiance)
         return fmt::format("--irradiance is for {}, not for {}", plant_endings(), format->extension);

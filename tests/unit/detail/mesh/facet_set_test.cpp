@@ -35,6 +35,15 @@ TEST(FacetSet, BodiesBackToBackHideWhatTheyShare) {
     EXPECT_TRUE(set.facets()[0].hidden);
 }
 
+// A cube thinner than what is welded: its front and its back have the same corners.
+TEST(FacetSet, FacesOfOneBodyDoNotHideEachOther) {
+    FacetSet set;
+    set.add(square(set, 0, true, 0));
+    set.add(square(set, 0, false, 0));
+    EXPECT_EQ(set.triangle_count(), 2u);
+    EXPECT_FALSE(set.facets()[0].hidden);
+}
+
 TEST(FacetSet, SheetsHideNothing) {
     FacetSet set;
     Facet sheet = square(set, 0, true, 0);

@@ -187,6 +187,25 @@ TEST(Cpfg, WritesBooleanConditionsOfThePreprocessorOut) {
     EXPECT_NEAR(model.segments()[0].second.y, 2, 1e-9);
 }
 
+TEST(Cpfg, WritesMacrosOutThatStandForStatements) {
+    const Imported model =
+        cpfg("#define INIT a = 1; b = 2;\n#define INC(x) x = x + 3\nLsystem: 1\nStart: { INIT INC(a); }\n"
+             "derivation length: 0\nAxiom: F(a)F(b)\nendlsystem\n");
+    ASSERT_EQ(model.segments().size(), 2u) << model.said();
+    EXPECT_NEAR(model.segments()[0].second.y, 4, 1e-9);
+    EXPECT_NEAR(model.segments()[1].second.y, 6, 1e-9);
+}
+
+TEST(Cpfg, DoesNotComputeWhatAConditionDoesNotNeed) {
+    for (const char* const condition : {"N && 10/N > 2", "!(N == 0 || 10/N > 2)", "0 && (1 || 1/0)"}) {
+        const Imported model = cpfg(std::string("#define N 0\n#if ") + condition +
+                                    "\n#define L 2\n#else\n#define L 1\n#endif\nLsystem: 1\n"
+                                    "derivation length: 0\nAxiom: F(L)\nendlsystem\n");
+        ASSERT_EQ(model.segments().size(), 1u) << condition << "\n" << model.said();
+        EXPECT_NEAR(model.segments()[0].second.y, 1, 1e-9) << condition;
+    }
+}
+
 /// Files beside a model, in a folder of their own.
 class Companions {
   public:
@@ -246,7 +265,7 @@ TEST(Cpfg, SurfacesAreAsLargeAsTheirSizeSays) {
     const Companions files(
         {{"p.v", "surface: l leaf.s 2\n"},
          {"leaf.s", "CONTACT POINT  X: 0 Y: 0 Z: 0\nHEADING  X: 0 Y: 2 Z: 0\nUP X: 0 Y: 0 Z: -1\n"
-                    "SIZE: 10\nPatch_1\nTOP COLOR: 0 DIFFUSE: 0\nAL: ~ A: ~ AR: ~\nL: ~ R: ~\n"
+                    "SIZE: 10\nBLADE\nTOP COLOR: 0 DIFFUSE: 0\nAL: ~ A: ~ AR: ~\nL: ~ R: ~\n"
                     "0 0 0 1 0 0 2 0 0 3 0 0\n0 1 0 1 1 0 2 1 0 3 1 0\n"
                     "0 2 0 1 2 0 2 2 0 3 2 0\n0 3 5 1 3 5 2 3 5 3 3 5\n"}});
     const Imported model = files.model("Lsystem: 1\nderivation length: 0\nAxiom: F~l(1,2,3)\nendlsystem\n");

@@ -34,6 +34,23 @@ TEST(Flame, AffineMapsThatShrinkAreALimitSet) {
     EXPECT_THAT(model.translation, HasSubstr("width: 4 }"));
 }
 
+TEST(Flame, TakesAnAttributeThatIsNoNumberForMissing) {
+    const std::string coefs = "linear=\"1\" coefs=\".5 0 0 .5 ";
+    const auto translation = [&](const std::string& attributes) {
+        const ImportedShapes model("a.flame", flame("<xform weight=\"1\" " + attributes + coefs +
+                                                    "1 0\"/><xform weight=\"1\" " + coefs + "0 0\"/>"));
+        EXPECT_TRUE(model.graph) << attributes << model.said();
+        return model.translation;
+    };
+    const std::string plain = translation("");
+    for (const char* const attributes :
+         {"color_speed=\"nan\" ", "opacity=\"inf\" ", "symmetry=\"\" ", "color_speed=\"1e400\" "})
+        EXPECT_EQ(translation(attributes), plain) << attributes;
+    const ImportedShapes weightless("a.flame", flame("<xform weight=\"nan\" " + coefs + "1 0\"/>" +
+                                                     "<xform weight=\"2\" " + coefs + "0 0\"/>"));
+    EXPECT_THAT(weightless.translation, ::testing::Not(HasSubstr("nan")));
+}
+
 TEST(Flame, ChaosIsTheDigraph) {
     const std::string half = "linear=\".5\" coefs=\"1 0 0 1 ";
     const ImportedShapes model("a.flame",

@@ -53,6 +53,21 @@ TEST(Lpy, KeepsNamesAndStructure) {
     EXPECT_EQ(model.segment_count(), "7");
 }
 
+TEST(Lpy, ComputesAsPythonDoes) {
+    // The remainder has the sign of the divisor.
+    const Imported remainder = lpy("F((0-1) % 4)", "");
+    ASSERT_EQ(remainder.ends().size(), 1u) << remainder.said();
+    EXPECT_NEAR(glm::length(remainder.ends()[0]), 3, 1e-9);
+    // A name may begin with a word of L-Py.
+    const Imported external = lpy("F(external_length)", "", "external_length = 3\n");
+    ASSERT_EQ(external.ends().size(), 1u) << external.said();
+    EXPECT_NEAR(glm::length(external.ends()[0]), 3, 1e-9);
+    // A local keeps its value when what it was read from changes: no translation, and it is said.
+    const Imported swap =
+        lpy("F(a)F(b)", "", "a = 1\nb = 2\ndef StartEach():\n  global a, b\n  t = a\n  a = b\n  b = t\n");
+    EXPECT_THAT(swap.said(), HasSubstr("left out"));
+}
+
 TEST(Lpy, HasTheCountsOfTheSameSystemByHand) {
     const Imported model("a.lpy",
                          "Axiom: A(0)\nderivation length: 6\nproduction:\nA(n) :\n"
@@ -106,7 +121,7 @@ TEST(Lpy, RulesDecideByIf) {
               "6");
     EXPECT_EQ(lpy("A(0)B", "A(0) --> FFB\nB --> A(1)\nA(n) --> F\n").segment_count(), "4");
     const Imported model = lpy("A(1)", "A(x) :\n  y = x if 0 < x < 2 else 7\n  produce F(y**2 % 3)\n");
-    EXPECT_THAT(model.translation, HasSubstr("F(mod((choose((0 < x && x < 2), x, 7))^2, 3))"));
+    EXPECT_THAT(model.translation, HasSubstr("F(mod(mod((choose((0 < x && x < 2), x, 7))^2, 3) + (3), 3))"));
 }
 
 TEST(Lpy, FunctionsOfOneExpressionAreWrittenOut) {

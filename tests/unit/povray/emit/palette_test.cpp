@@ -26,6 +26,12 @@ TEST(PovrayPalette, UpTo128ColoursAreAMapOfHardSteps) {
     EXPECT_TRUE(PaletteLayout(129).picture());
 }
 
+TEST(PovrayPalette, PicturesAreClearInAllColours) {
+    EXPECT_EQ(clear_image(""), "");
+    EXPECT_EQ(clear_image("transmit 0.5"), "transmit all 0.5 ");
+    EXPECT_EQ(clear_image("filter 0.25 transmit 0.25"), "filter all 0.25 transmit all 0.25 ");
+}
+
 TEST(PovrayPalette, StepsAreHitInTheirMiddle) {
     for (const std::uint32_t count : {2u, 3u, 100u, 128u})
         for (std::uint32_t slot = 0; slot < count; ++slot) {

@@ -138,12 +138,12 @@ class Pieces {
 
 Ball tight_ball(const Graph& graph, const Outers& outers, ObjectId id, std::size_t most_pieces,
                 const CancelFlag& cancel) {
-    constexpr std::size_t most_in_memory = 4'000'000; // the last round may make many more than `most_pieces`
+    const std::size_t most_in_all = 8 * most_pieces; // the last round may make many more
     Pieces pieces(graph, outers, cancel);
     pieces.add_instances(id, Affine{});
     Ball best = smallest_ball(pieces.balls());
     Ball current = best;
-    while (pieces.made() < most_pieces && pieces.split_supporting(current, most_in_memory)) {
+    while (pieces.made() < most_pieces && pieces.split_supporting(current, most_in_all)) {
         current = smallest_ball(pieces.balls());
         if (current.radius < best.radius) best = current;
     }

@@ -32,6 +32,11 @@ double times(double a, double b) {
     return a == 0 || b == 0 ? 0 : a * b;
 }
 
+/// The volume of the image of a set of volume 1.
+double growth(const Affine& map) {
+    return std::abs(glm::determinant(map.linear));
+}
+
 double volume_of(const Box& box) {
     if (box.empty()) return 0;
     const Vec3 size = box.size();
@@ -180,7 +185,7 @@ class VolumeAnalysis {
         const std::span<const Instance> instances(object.instances);
         std::vector<Part> parts;
         for (const Instance& instance : instances)
-            parts.push_back({instance.master, std::abs(glm::determinant(instance.parent_from_child.linear))});
+            parts.push_back({instance.master, growth(instance.parent_from_child)});
         const std::size_t united = object.combination == Combination::subtract ? 1 : 0; // and all that follow
         group(instances.subspan(united), std::span(parts).subspan(united));
         for (std::size_t i = 0; object.is_combined() && i < parts.size(); ++i) {
@@ -244,8 +249,8 @@ class VolumeAnalysis {
             range.most = infinity;
         } else if (object.packed) {
             for (const PackedEdge& edge : object.packed) {
-                const double volume = std::abs(glm::determinant(edge.parent_from_child.linear)) *
-                                      graftal::volume_of(edge.primitive).value_or(0);
+                const double volume =
+                    growth(edge.parent_from_child) * graftal::volume_of(edge.primitive).value_or(0);
                 range = {std::max(range.least, volume), range.most + volume};
             }
         }
@@ -268,7 +273,7 @@ class VolumeAnalysis {
         if (is_proxy(graph_.objects[object.id])) return {0, volume_of(bounds_[object.id].ball)};
         const std::optional<Instance>& terminal = graph_.objects[object.id].terminal;
         if (!terminal) return combined(object.id, object.parts, true);
-        return range_of({terminal->master, std::abs(glm::determinant(terminal->parent_from_child.linear))});
+        return range_of({terminal->master, growth(terminal->parent_from_child)});
     }
 
     /// Volumes of unending objects, level by level. Those of the limit come nearer from both sides, so they

@@ -12,9 +12,7 @@ namespace graftal {
 
 Document::Document(std::string name, std::string text) : name_(std::move(name)) {
     const FileId file = sources_.add(name_, std::move(text));
-    const std::string_view ending = extension_of(name_);
-    for (const Language& language : languages())
-        if (!ending.empty() && ending.substr(1) == language.extension) language_ = &language;
+    language_ = language_with_ending(extension_of(name_), languages());
     if (!language_) return;
     if (language_->extension == "lsys")
         tree_ = parse_lsys(sources_, file, findings_);

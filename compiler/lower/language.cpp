@@ -94,14 +94,17 @@ bool looks_like_model(FileId file, const SourceMap& sources, std::span<const Lan
 
 } // namespace
 
+const Language* language_with_ending(std::string_view ending, std::span<const Language> languages) {
+    const auto found = std::ranges::find_if(languages, [&](const Language& language) {
+        return ending == fmt::format(".{}", language.extension);
+    });
+    return found == languages.end() ? nullptr : &*found;
+}
+
 const Language* language_of(FileId file, const SourceMap& sources, std::span<const Language> languages) {
     const std::string_view name = sources.name(file);
     if (name == standard_input) return &guessed_language(file, sources, languages);
-    const std::string_view extension = extension_of(name);
-    const auto found = std::ranges::find_if(languages, [&](const Language& language) {
-        return extension == fmt::format(".{}", language.extension);
-    });
-    return found == languages.end() ? nullptr : &*found;
+    return language_with_ending(extension_of(name), languages);
 }
 
 std::unique_ptr<const ModelTree> parse_model(const Language& language, FileId file, const SourceMap& sources,

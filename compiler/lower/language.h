@@ -67,6 +67,9 @@ struct Language {
 std::unique_ptr<const ModelTree> parse_model(const Language& language, FileId file, const SourceMap& sources,
                                              std::span<const Language> languages, Diagnostics& diagnostics);
 
+/// The language of files with this ending, ".rifs" for one; null: none.
+const Language* language_with_ending(std::string_view ending, std::span<const Language> languages);
+
 /// The language of a file by its name; null where the name has none of the extensions. The language of
 /// standard input is the one that alone begins a statement with the first such word outside of braces, else
 /// the last of the table.

@@ -104,11 +104,9 @@ class PlyReader {
         if (words[0] == "format" && words.size() >= 2) {
             has_format_ = true;
             text_ = words[1] == "ascii";
-            constexpr bool is_little = std::endian::native == std::endian::little;
-            swapped_ = words[1] == (is_little ? "binary_big_endian" : "binary_little_endian");
-            return text_ || swapped_ ||
-                   words[1] == (is_little ? "binary_little_endian" : "binary_big_endian") ||
-                   fail(fmt::format("'{}' is no format of PLY files", words[1]));
+            const bool little = words[1] == "binary_little_endian", big = words[1] == "binary_big_endian";
+            swapped_ = std::endian::native == std::endian::little ? big : little;
+            return text_ || little || big || fail(fmt::format("'{}' is no format of PLY files", words[1]));
         }
         if (words[0] == "element" && words.size() == 3) {
             Element& element = elements_.emplace_back();

@@ -85,20 +85,20 @@ class OrbitLowering {
                 diagnostics_.error(e.span, fmt::format("this formula has more than {} words", most_words));
             return {};
         }
-        if (e.kind == Expression::Kind::name)
+        Expression copy;
+        if (e.kind == Expression::Kind::name && !arguments.empty()) {
             for (const auto& [name, value] : arguments)
                 if (e.text == name) {
                     words_ += words_of(*value);
                     return *value;
                 }
-        Expression copy;
-        // A function reads the block's constants, whatever a map calls its own.
-        if (const auto constant = model_.lets.find(std::string(e.text));
-            e.kind == Expression::Kind::name && !arguments.empty() && constant != model_.lets.end() &&
-            !std::isnan(constant->second)) {
-            copy.number = constant->second;
-            copy.span = e.span;
-            return copy;
+            // A function reads the block's constants, whatever a map calls its own.
+            if (const auto constant = model_.lets.find(e.text);
+                constant != model_.lets.end() && !std::isnan(constant->second)) {
+                copy.number = constant->second;
+                copy.span = e.span;
+                return copy;
+            }
         }
         copy.kind = e.kind;
         copy.number = e.number;

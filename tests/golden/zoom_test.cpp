@@ -95,7 +95,7 @@ TEST_F(Zoom, AmongCrushedMapsItEnds) {
     EXPECT_THAT(result.err, HasSubstr("zoom in less"));
 }
 
-/// Of a map that crushes to a line and turns it aside, the second power is a point.
+/// The second power of a map that crushes to a line and turns it aside is a point.
 TEST_F(Zoom, LeavesOutWhatIsCrushedToAPoint) {
     write("m.rifs", "rifs m {\n  codes 2d {\n    0 0 0.5 0    0 0\n    0.5 0 0 0.5  0.2 0.2\n    0.5 0 0 0.5 "
                     " -0.2 0.2\n  }\n}\n");

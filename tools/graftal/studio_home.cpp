@@ -97,12 +97,6 @@ bool may_write(const std::string& path) {
     return lies_in(path, ".");
 }
 
-bool is_model_ending(std::string_view ending) {
-    return std::ranges::any_of(languages(), [&](const Language& language) {
-        return ending.starts_with('.') && ending.substr(1) == language.extension;
-    });
-}
-
 /// Does what the command line does with the job's words, over the texts of the page.
 void run_words(const FileJob& job, const std::string& output, const std::string& root,
                const CancelFlag& cancel, const StudioHome::OnShare& on_share, Compilation& compilation) {
@@ -165,7 +159,7 @@ FileResult made_file(const FileJob& job, const std::string& root, const CancelFl
         output = temporary.path() + "/" + result.name;
     }
     if (compilation.status.ok()) {
-        if (is_model_ending(job.suffix))
+        if (language_with_ending(job.suffix, languages()))
             compilation.status = write_text(output, job.model.text);
         else
             run_words(job, output, root, cancel, on_share, compilation);

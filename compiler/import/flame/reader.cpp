@@ -16,6 +16,12 @@ namespace graftal::flame {
 
 namespace {
 
+/// The number that a text is; nothing where it is none, or too large for any use.
+std::optional<double> number_in(std::string_view text) {
+    const std::optional<double> value = parse_number(text);
+    return value && std::abs(*value) <= 1e50 ? value : std::nullopt;
+}
+
 /// `all`: becomes false where a word is no number.
 std::vector<double> numbers_in(std::string_view text, bool* all = nullptr) {
     std::vector<double> numbers;
@@ -24,18 +30,16 @@ std::vector<double> numbers_in(std::string_view text, bool* all = nullptr) {
         at = text.find_first_not_of(" \t\r\n,", at);
         if (at == std::string_view::npos) return numbers;
         const std::size_t end = std::min(text.find_first_of(" \t\r\n,", at), text.size());
-        const std::optional<double> value = parse_number(text.substr(at, end - at));
-        const bool good = value && std::abs(*value) <= 1e50;
-        if (all && !good) *all = false;
-        numbers.push_back(good ? *value : 0);
+        const std::optional<double> value = number_in(text.substr(at, end - at));
+        if (all && !value) *all = false;
+        numbers.push_back(value.value_or(0));
         at = end;
     }
 }
 
 /// The number of an attribute; `fallback` where it is missing or none.
 double number_of(const pugi::xml_attribute& attribute, double fallback) {
-    const std::vector<double> numbers = numbers_in(attribute.value());
-    return numbers.size() == 1 && parse_number(trimmed(attribute.value())) ? numbers[0] : fallback;
+    return number_in(trimmed(attribute.value())).value_or(fallback);
 }
 
 /// Fractorium and the plugins of Apophysis have some variations and numbers by other names.

@@ -296,13 +296,13 @@ class LpyReader {
                 const auto& [name, value] = all->front();
                 std::string own = python_.expression(value, line.span, values);
                 if (globals.contains(name)) {
+                    const std::string global = lpy_own_name(name);
                     // Locals are written out where they are read, which would read the new value.
-                    for (const auto& [local, text_of_local] : values)
-                        if (names_any(text_of_local,
-                                      [&](std::string_view read) { return read == lpy_own_name(name); }))
+                    for (const auto& [local, written] : values)
+                        if (names_any(written, [&](std::string_view read) { return read == global; }))
                             return std::nullopt;
                     CpfgAction& action = block.emplace_back();
-                    action.name = action.target = lpy_own_name(name);
+                    action.name = action.target = global;
                     action.value = std::move(own);
                 } else {
                     values.insert_or_assign(name, "(" + own + ")");

@@ -146,14 +146,19 @@ TEST(Environment, ShadowsFallUponTheVoxelsBelow) {
     EXPECT_NEAR(asked.values[4][0], 1, 1e-12);
 }
 
-TEST(Environment, PointsAttractUntilTheyAreReached) {
+/// Points in a ball of radius 1 about (0, 4, 0).
+EnvironmentSettings points_in_a_ball(double influence, double kill) {
     EnvironmentSettings settings{.kind = Kind::points};
     settings.regions = {{.kind = EnvironmentRegion::Kind::sphere, .a = Vec3(0, 4, 0), .extent = 1}};
     settings.point_count = 200;
-    settings.influence = 5;
-    settings.kill = 0.5;
+    settings.influence = influence;
+    settings.kill = kill;
     settings.seed = 3;
-    Asked asked(settings, {{0, 0, 0}, {0, 1, 0}, {40, 0, 0}}, {0, 0, 0, 0});
+    return settings;
+}
+
+TEST(Environment, PointsAttractUntilTheyAreReached) {
+    Asked asked(points_in_a_ball(5, 0.5), {{0, 0, 0}, {0, 1, 0}, {40, 0, 0}}, {0, 0, 0, 0});
     asked.ask();
     ASSERT_TRUE(asked.answered);
     EXPECT_EQ(asked.values[0][0], 0) << "the other is nearer";
@@ -168,12 +173,7 @@ TEST(Environment, PointsAttractUntilTheyAreReached) {
 }
 
 TEST(Environment, PointsAreGoneWithinReachThatIsLargerThanTheirInfluence) {
-    EnvironmentSettings settings{.kind = Kind::points};
-    settings.regions = {{.kind = EnvironmentRegion::Kind::sphere, .a = Vec3(0, 4, 0), .extent = 1}};
-    settings.point_count = 200;
-    settings.influence = 0.5;
-    settings.kill = 5.5;
-    Asked asked(settings, {{0, 0, 0}}, {0, 0, 0, 0});
+    Asked asked(points_in_a_ball(0.5, 5.5), {{0, 0, 0}}, {0, 0, 0, 0});
     asked.ask();
     asked.places = {{0, 4, 0}};
     asked.ask();

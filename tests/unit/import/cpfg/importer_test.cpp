@@ -179,12 +179,17 @@ TEST(Cpfg, AsksQueriesBeforeEachStep) {
     EXPECT_THAT(model.translation, HasSubstr("  precedence text\n"));
 }
 
+/// After these lines, a condition gives a segment the length 2 where it holds, else 1.
+void expect_condition(const std::string& lines, const std::string& condition, bool holds) {
+    const Imported model = cpfg(lines + "#if " + condition +
+                                "\n#define L 2\n#else\n#define L 1\n#endif\nLsystem: 1\n"
+                                "derivation length: 0\nAxiom: F(L)\nendlsystem\n");
+    ASSERT_EQ(model.segments().size(), 1u) << condition << "\n" << model.said();
+    EXPECT_NEAR(model.segments()[0].second.y, holds ? 2 : 1, 1e-9) << condition;
+}
+
 TEST(Cpfg, WritesBooleanConditionsOfThePreprocessorOut) {
-    const Imported model =
-        cpfg("#define A 3\n#if A > 2 && (defined(B) || A*2 == 6) && !defined(C)\n#define L 2\n"
-             "#else\n#define L 1\n#endif\nLsystem: 1\nderivation length: 0\nAxiom: F(L)\nendlsystem\n");
-    ASSERT_EQ(model.segments().size(), 1u) << model.said();
-    EXPECT_NEAR(model.segments()[0].second.y, 2, 1e-9);
+    expect_condition("#define A 3\n", "A > 2 && (defined(B) || A*2 == 6) && !defined(C)", true);
 }
 
 TEST(Cpfg, WritesMacrosOutThatStandForStatements) {
@@ -197,13 +202,8 @@ TEST(Cpfg, WritesMacrosOutThatStandForStatements) {
 }
 
 TEST(Cpfg, DoesNotComputeWhatAConditionDoesNotNeed) {
-    for (const char* const condition : {"N && 10/N > 2", "!(N == 0 || 10/N > 2)", "0 && (1 || 1/0)"}) {
-        const Imported model = cpfg(std::string("#define N 0\n#if ") + condition +
-                                    "\n#define L 2\n#else\n#define L 1\n#endif\nLsystem: 1\n"
-                                    "derivation length: 0\nAxiom: F(L)\nendlsystem\n");
-        ASSERT_EQ(model.segments().size(), 1u) << condition << "\n" << model.said();
-        EXPECT_NEAR(model.segments()[0].second.y, 1, 1e-9) << condition;
-    }
+    for (const char* const condition : {"N && 10/N > 2", "!(N == 0 || 10/N > 2)", "0 && (1 || 1/0)"})
+        expect_condition("#define N 0\n", condition, false);
 }
 
 /// Files beside a model, in a folder of their own.

@@ -279,7 +279,7 @@ class VolumeAnalysis {
     /// Volumes of unending objects, level by level. Those of the limit come nearer from both sides, so they
     /// are right wherever the levels end.
     bool unfold() {
-        constexpr unsigned limit_levels = 4000; // 0.8 to this power is no number any more
+        constexpr unsigned limit_levels = 40'000; // 0.98 to this power is no number any more
         std::vector<VolumeRange> deeper;
         std::size_t edges = 0;
         boxes_hold_levels_ = levels_ && boxes_hold_levels();

@@ -37,7 +37,8 @@ class LeafWalk {
     LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
              std::span<const Painter> painters);
 
-    /// The next leaf, or false at the end. Memory O(depth).
+    /// The next leaf, or false at the end. Memory: the parts that wait, with a colour for each painter, and
+    /// the parts of sets without area that were told apart.
     bool next(WalkedLeaf& leaf);
     /// Nodes and leaves so far, and what comparing them took.
     std::uint64_t visits() const { return visits_; }

@@ -22,26 +22,11 @@ constexpr std::size_t most_children = 100;
 constexpr std::size_t most_tries = 8; // for each child
 constexpr std::size_t most_changes = 4;
 
-/// Numbers one after the other.
-class Draws {
-  public:
-    explicit Draws(CounterRandom random) : random_(random) {}
-    /// A number of [0, 1).
-    double unit() { return CounterRandom::unit(random_(next_++)); }
-    /// A number of [-1, 1), and never near to 0: a child that hardly changes shows nothing.
-    double change() {
-        const double size = 0.25 + 0.75 * unit();
-        return unit() < 0.5 ? -size : size;
-    }
-    /// Requires count > 0.
-    std::size_t below(std::size_t count) {
-        return std::min(static_cast<std::size_t>(unit() * static_cast<double>(count)), count - 1);
-    }
-
-  private:
-    CounterRandom random_;
-    std::uint64_t next_ = 0;
-};
+/// A number of [-1, 1), and never near to 0: a child that hardly changes shows nothing.
+double change(RandomStream& draws) {
+    const double size = 0.25 + 0.75 * draws.unit();
+    return draws.unit() < 0.5 ? -size : size;
+}
 
 /// With three digits, as people write them.
 double rounded(double value) {
@@ -62,9 +47,9 @@ bool can_vary(const ModelParameter& parameter) {
            (parameter.name != "steps" && parameter.name != "seed");
 }
 
-double varied(const ModelParameter& parameter, double spread, Draws& draws) {
+double varied(const ModelParameter& parameter, double spread, RandomStream& draws) {
     const auto [least, most] = range_of(parameter);
-    const double by = spread * draws.change() * (most - least) / 2;
+    const double by = spread * change(draws) * (most - least) / 2;
     const bool whole =
         parameter.kind == ModelParameter::Kind::let && parameter.literal && is_whole(parameter.value);
     double value = parameter.value + by;
@@ -75,7 +60,8 @@ double varied(const ModelParameter& parameter, double spread, Draws& draws) {
     return std::clamp(value, least, most);
 }
 
-Variation child_by_parameters(const std::vector<ModelParameter>& parameters, double spread, Draws& draws) {
+Variation child_by_parameters(const std::vector<ModelParameter>& parameters, double spread,
+                              RandomStream& draws) {
     Variation child;
     const std::size_t sure = draws.below(parameters.size());
     std::vector<std::string> says;
@@ -169,7 +155,7 @@ class Finder {
 };
 
 Variation child_by_rules(const Document& document, const std::vector<Changeable>& words, double spread,
-                         Draws& draws) {
+                         RandomStream& draws) {
     const auto wanted = 1 + static_cast<std::size_t>(spread * (most_changes - 1) * draws.unit() + 0.5);
     std::set<std::size_t> chosen;
     for (std::size_t i = 0; i < wanted; ++i)
@@ -182,7 +168,7 @@ Variation child_by_rules(const Document& document, const std::vector<Changeable>
         const std::string_view old = document.text(word.span);
         std::string now;
         if (word.number) {
-            const double value = rounded(*word.number * (1 + spread * draws.change()));
+            const double value = rounded(*word.number * (1 + spread * change(draws)));
             if (value == *word.number) continue;
             now = number_text(value);
         } else {
@@ -230,7 +216,7 @@ std::vector<Variation> vary(const Document& document, const std::vector<ModelPar
     std::vector<Variation> children;
     std::set<std::string> known = {""};
     for (std::uint64_t number = 0; children.size() < count && number < count * most_tries; ++number) {
-        Draws draws(random.sequence(number));
+        RandomStream draws(random.sequence(number));
         Variation child;
         if (options.kind == VariationKind::seed) {
             constexpr double most_seed = 1e6; // short enough to be read

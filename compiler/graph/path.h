@@ -4,10 +4,13 @@
 // walks follow edges by these rules, over the graph's instances and over what is made of them (CutEdge, and
 // the tracer's edges).
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
+
+#include <glm/common.hpp>
 
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
@@ -34,6 +37,12 @@ struct PathState {
     std::optional<MaterialId> material; ///< the one nearest to the end
     std::uint32_t levels = 0;           ///< levels used up by the path
 };
+
+/// The tints of a path as one, straight again (Hart 1992, eq. (9) and (10)).
+inline Tint straight(const PathTint& path) {
+    if (!(path.alpha > 0)) return {};
+    return {glm::min(path.premultiplied / path.alpha, Rgb(1.0)), std::min(path.alpha, 1.0)};
+}
 
 /// One instance further.
 inline PathState descend(const PathState& path, const Instance& instance, const Components& components) {

@@ -10,7 +10,9 @@
 #include <fmt/format.h>
 
 #include "compiler/support/number.h"
+#include "compiler/support/path_text.h"
 #include "compiler/support/printable.h"
+#include "compiler/support/srgb.h"
 #include "compiler/syntax/lookalikes.h"
 
 namespace graftal {
@@ -104,6 +106,24 @@ LeadingNumber leading_number(std::string_view text) {
     if (negative) number.value = -number.value;
     number.length = static_cast<std::size_t>(end - text.data());
     return number;
+}
+
+std::string linear_text(const std::array<double, 3>& rgb) {
+    return fmt::format("{}, {}, {}", shortest(linear_from_srgb(rgb[0])), shortest(linear_from_srgb(rgb[1])),
+                       shortest(linear_from_srgb(rgb[2])));
+}
+
+std::string remark_text(std::string_view comment) {
+    return comment.empty() ? std::string() : fmt::format("   # {}", comment);
+}
+
+std::vector<ForeignModel> one_model(const ForeignFile& file) {
+    return {{std::string(stem_of(file.sources.name(file.file))),
+             file.span(0, std::min(file.text().find('\n'), file.text().size()))}};
+}
+
+std::vector<ForeignModel> one_scene(const ForeignFile& file) {
+    return {{"scene", file.span(0, file.text().size())}};
 }
 
 std::string CodeReader::next(std::string_view text, std::size_t& at, std::size_t begin,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -44,6 +45,18 @@ struct LeadingNumber {
     std::size_t length = 0;
 };
 LeadingNumber leading_number(std::string_view text);
+
+/// The linear light of an sRGB colour: "0.5, 0.2, 0".
+std::string linear_text(const std::array<double, 3>& rgb);
+
+/// A comment behind a line of ours; "" of none.
+std::string remark_text(std::string_view comment);
+
+/// The one model of a file, by the file's name, with its first line as the place.
+std::vector<ForeignModel> one_model(const ForeignFile& file);
+
+/// The one model of a file that is a scene: all of its text.
+std::vector<ForeignModel> one_scene(const ForeignFile& file);
 
 /// Reads the code of formats whose strings have a symbol for each byte: ASCII, and other letters as in
 /// Latin-1. A typographic sign becomes the signs that it stands for, with a warning for each kind; any other

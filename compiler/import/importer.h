@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -74,9 +75,13 @@ struct Importer {
     std::string_view sign; ///< by which people know a text of the format: "a block 'name { ... }'"
     /// The models in the order of the text. Reports faults that keep it from telling them apart.
     std::vector<ForeignModel> (*models)(const ForeignFile& file);
-    /// Nothing after an error.
-    std::optional<Translation> (*translate)(const ForeignFile& file, const ForeignModel& model);
+    /// The translation of a model, which is of no use after an error.
+    std::optional<Translation> (*translation)(const ForeignFile& file, const ForeignModel& model);
     std::string_view host = {}; ///< the kind of text (UnreadKind) that the format is a part of: "XML or HTML"
+    std::size_t most_bytes = SIZE_MAX; ///< of a file
+
+    /// The model as text of ours; nothing after an error.
+    std::optional<Translation> translate(const ForeignFile& file, const ForeignModel& model) const;
 };
 
 } // namespace graftal

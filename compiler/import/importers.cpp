@@ -7,18 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "compiler/import/cfdg/importer.h"
-#include "compiler/import/cpfg/importer.h"
-#include "compiler/import/cpfg/surface.h"
-#include "compiler/import/eisenscript/importer.h"
-#include "compiler/import/flame/importer.h"
 #include "compiler/import/foreign_text.h"
-#include "compiler/import/fractint/ifs.h"
-#include "compiler/import/fractint/lsystem.h"
-#include "compiler/import/houdini/importer.h"
-#include "compiler/import/lparser/importer.h"
-#include "compiler/import/lpy/importer.h"
-#include "compiler/import/unread.h"
+#include "compiler/import/formats.h"
 #include "compiler/languages/languages.h"
 #include "compiler/support/alternatives.h"
 #include "compiler/support/path_text.h"
@@ -65,6 +55,71 @@ void refuse(const ForeignFile& file, const std::vector<const Importer*>& rows) {
     file.diagnostics
         .error(file.span(first, end), fmt::format("'{}' is no {}: these words begin none", name, formats))
         .with_hint(signs);
+}
+
+/// A kind of text that graftal knows, and does not read.
+struct UnreadKind {
+    std::string_view name;    ///< "a Python program"
+    std::string_view instead; ///< the nearest thing that graftal reads; "" for none
+    std::size_t begin = 0;    ///< of the words that tell it
+};
+
+constexpr std::string_view as_cpfg =
+    "graftal reads L-systems of cpfg: lines 'Lsystem: 1', 'derivation length: 4', 'Axiom: A(1)', "
+    "'A(x) --> F(x) A(x)' and 'endlsystem'";
+constexpr std::string_view no_program =
+    "graftal runs no programs: write its rules alone, as .lsys, .rifs or .inst";
+
+bool has_import(std::string_view line) {
+    return line.starts_with("import ") ||
+           (line.starts_with("from ") && line.find(" import ") != std::string_view::npos) ||
+           (line.starts_with("def ") && line.ends_with(':'));
+}
+
+std::optional<UnreadKind> kind_of_lines(std::string_view text, bool known_to_none) {
+    std::optional<UnreadKind> found;
+    std::optional<std::size_t> declaration, ended; // of a module; one that a ';' ends, as in C++
+    std::optional<std::size_t> header;             // the first that is included
+    for (const TextLine& line : lines_of(text, 0, text.size())) {
+        const std::string_view words = trimmed(line.text);
+        if (words.empty()) continue;
+        const auto has = [&](std::string_view word) { return words.find(word) != std::string_view::npos; };
+        const std::size_t begin = line.begin + static_cast<std::size_t>(words.data() - line.text.data());
+        const bool includes = words.starts_with("#include");
+        if (includes && has("lpfgall"))
+            return UnreadKind{"an L+C program for lpfg, which is C++", as_cpfg, begin};
+        if (words.starts_with("module ")) {
+            if (!declaration) declaration = begin;
+            if (!ended && has(";")) ended = begin;
+        }
+        if (includes && !header) header = begin;
+        if (header && words.starts_with("produce ") && words.ends_with(';')) ended = ended.value_or(*header);
+        if (ended && has("produce ")) return UnreadKind{"an L+C program, which is C++", as_cpfg, *ended};
+        if (declaration && has("==>")) return UnreadKind{"an XL program for GroIMP", as_cpfg, *declaration};
+        if (!known_to_none || found) continue;
+        if (words.starts_with("#declare ") || (includes && has(".inc\"")))
+            found = {"a scene of POV-Ray", "graftal writes such scenes, by 'graftal compile'", begin};
+        else if (includes)
+            found = {"a C or C++ program", no_program, begin};
+        else if (has_import(words))
+            found = {"a Python program", no_program, begin};
+    }
+    return found;
+}
+
+/// The kind of a text, in a time linear in it. A language of programs with L-systems in them is known for
+/// sure, although their blocks may look like another format's; `known_to_none`: other kinds are meant, too.
+std::optional<UnreadKind> unread_kind(std::string_view text, bool known_to_none) {
+    const std::size_t begin = std::min(text.find_first_not_of(" \t\n\f\v"), text.size());
+    const std::string_view rest = text.substr(begin);
+    if (known_to_none && rest.starts_with('<')) return UnreadKind{"XML or HTML", "", begin};
+    if (known_to_none && (rest.starts_with('{') || rest.starts_with('['))) {
+        const std::size_t next = rest.find_first_not_of(" \t\n", 1);
+        if (next != std::string_view::npos &&
+            std::string_view("\"{[").find(rest[next]) != std::string_view::npos)
+            return UnreadKind{"JSON", "", begin};
+    }
+    return kind_of_lines(text, known_to_none);
 }
 
 /// Whether the text is of a kind that no importer reads, after the error that says so. The reader of a format
@@ -222,6 +277,18 @@ std::optional<ForeignModel> find_model(const Importer& importer, const ForeignFi
     return std::nullopt;
 }
 
+std::optional<Translation> Importer::translate(const ForeignFile& file, const ForeignModel& model) const {
+    if (file.text().size() > most_bytes) {
+        file.diagnostics.error(file.span(0, 0),
+                               fmt::format("{}: a file has at most {} characters", format, most_bytes));
+        return std::nullopt;
+    }
+    const std::size_t errors = file.diagnostics.error_count();
+    std::optional<Translation> written = translation(file, model);
+    if (file.diagnostics.error_count() > errors) return std::nullopt;
+    return written;
+}
+
 std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& sources,
                                Diagnostics& diagnostics, const TranslateOptions& options, WorkMeter* meter) {
     if (!is_foreign(sources.name(file)))
@@ -231,9 +298,8 @@ std::optional<FileId> own_text(FileId file, std::string_view model, SourceMap& s
     if (!importer) return std::nullopt;
     const std::optional<ForeignModel> found = find_model(*importer, foreign, model);
     if (!found) return std::nullopt;
-    const std::size_t errors = diagnostics.error_count();
     std::optional<Translation> translation = importer->translate(foreign, *found);
-    if (!translation || diagnostics.error_count() > errors) return std::nullopt;
+    if (!translation) return std::nullopt;
     const std::string name =
         fmt::format("{}:{}.{}", sources.name(file), plain_name(found->name), translation->extension);
     return sources.add_translation(name, std::move(translation->text), file, std::move(translation->origins));

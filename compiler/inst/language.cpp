@@ -1,4 +1,4 @@
-#include "compiler/inst/language.h"
+#include "compiler/lower/language.h"
 
 #include "compiler/inst/lower.h"
 #include "compiler/inst/parse/parser.h"

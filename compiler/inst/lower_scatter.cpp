@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "compiler/graph/path.h"
 #include "compiler/inst/scatter_points.h"
 #include "compiler/lower/lower_area.h"
 #include "compiler/lower/lower_transform.h"
@@ -343,8 +344,7 @@ Tint composed(const std::vector<Tint>& tints) {
     PathTint path;
     for (const Tint& tint : tints)
         path = PathTint(tint) * path;
-    if (path.alpha == 0) return {};
-    return {glm::clamp(path.premultiplied / path.alpha, 0.0, 1.0), std::min(path.alpha, 1.0)};
+    return straight(path);
 }
 
 } // namespace graftal

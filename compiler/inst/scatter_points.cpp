@@ -21,14 +21,14 @@ constexpr int candidates = 60;
 constexpr int most_attempts = 120;
 constexpr int samples_a_side = 256;
 
-/// Draws one after the other.
+/// Draws one after the other, which a meter counts.
 class Draws {
   public:
-    Draws(CounterRandom random, WorkMeter* meter) : random_(random), meter_(meter) {}
+    Draws(CounterRandom random, WorkMeter* meter) : stream_(random), meter_(meter) {}
 
     double unit() {
         if (meter_) meter_->add(1, StagePrice::draw);
-        return CounterRandom::unit(random_(next_++));
+        return stream_.unit();
     }
     Vec2 in_square() {
         const double x = unit();
@@ -37,9 +37,8 @@ class Draws {
     Vec2 in(const FlatArea& area) { return area.low + in_square() * (area.high - area.low); }
 
   private:
-    CounterRandom random_;
+    RandomStream stream_;
     WorkMeter* meter_;
-    std::uint64_t next_ = 0;
 };
 
 /// Places by cell, so that those near a place are found at once.

@@ -1,10 +1,11 @@
 #include "compiler/languages/languages.h"
 
-#include "compiler/inst/language.h"
-#include "compiler/lsys/language.h"
-#include "compiler/rifs/language.h"
-
 namespace graftal {
+
+// Languages, each in language.cpp of its folder.
+Language lsys_language(); ///< L-systems
+Language rifs_language(); ///< recurrent iterated function systems, and orbits
+Language inst_language(); ///< Hart's textual instancing language, and the text form of graphs
 
 std::span<const Language> languages() {
     // A text without a name that no keyword gives away is of the last: it is the text form of graphs.

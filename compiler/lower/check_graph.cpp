@@ -29,13 +29,9 @@ class Operands {
     Operands(const Graph& graph, const Components& components)
         : graph_(graph), components_(components), hollow_(graph.objects.size(), nothing),
           depth_(graph.objects.size(), 0) {
-        const std::vector<std::vector<ObjectId>> masters_first = strong_components(with_terminals()).members;
-        for (const std::vector<ObjectId>& members : masters_first)
-            for (bool changed = true; changed;) {
-                changed = false;
-                for (const ObjectId id : members)
-                    changed = look_at(id) || changed;
-            }
+        const Components joined = strong_components(with_terminals());
+        for (std::size_t component = 0; component < joined.members.size(); ++component)
+            look_at(joined.members[component], joined.cyclic[component]);
     }
 
     /// False after an error.
@@ -110,23 +106,36 @@ class Operands {
         return edges;
     }
 
-    /// True if something new is known of the object.
-    bool look_at(ObjectId id) {
+    /// Members of a cycle contain each other, so what one of them holds is in all of them. No depth is
+    /// counted along a cycle: where it leads through a combined object, by a terminal too, it is an error of
+    /// its own.
+    void look_at(const std::vector<ObjectId>& members, bool cyclic) {
+        ObjectId hollow = nothing;
+        std::uint32_t depth = 0;
+        for (const ObjectId id : members) {
+            look_at(id, cyclic);
+            if (hollow == nothing) hollow = hollow_[id];
+            depth = std::max(depth, depth_[id]);
+        }
+        for (const ObjectId id : members) {
+            if (hollow_[id] == nothing) hollow_[id] = hollow;
+            depth_[id] = depth;
+        }
+    }
+
+    void look_at(ObjectId id, bool cyclic) {
         const Object& object = graph_.objects[id];
-        const ObjectId hollow = hollow_[id];
-        const std::uint32_t depth = depth_[id];
         if (object.primitive && !encloses_volume(*object.primitive)) hollow_[id] = id;
+        const std::uint32_t own = object.is_combined() && !cyclic ? 1 : 0;
         const auto look_through = [&](const Instance& instance) {
             if (hollow_[id] == nothing)
                 hollow_[id] =
                     is_singular(instance.parent_from_child) ? instance.master : hollow_[instance.master];
-            const bool counts = object.is_combined() && !components_.cyclic[components_.component_of[id]];
-            depth_[id] = std::max(depth_[id], depth_[instance.master] + (counts ? 1 : 0));
+            depth_[id] = std::max(depth_[id], depth_[instance.master] + own);
         };
         for (const Instance& instance : object.instances)
             look_through(instance);
         if (object.terminal) look_through(*object.terminal);
-        return hollow_[id] != hollow || depth_[id] != depth;
     }
 
     const Graph& graph_;

@@ -159,15 +159,36 @@ std::vector<MaterialId> append_materials(Graph& into, const Graph& from, std::st
     return ids;
 }
 
+constexpr ObjectId no_object = UINT32_MAX;
+
+/// Ids of `into` for the primitives of `from`; no_object for those that it does not have yet.
+std::unordered_map<Primitive, ObjectId> primitives_of(const Graph& from, const Graph& into) {
+    std::unordered_map<Primitive, ObjectId> ids;
+    for (const Object& object : from.objects)
+        if (object.primitive) ids.emplace(*object.primitive, no_object);
+    std::size_t missing = ids.size();
+    for (ObjectId id = 0; id < into.objects.size() && missing > 0; ++id) {
+        if (!into.objects[id].primitive) continue;
+        const auto wanted = ids.find(*into.objects[id].primitive);
+        if (wanted == ids.end() || wanted->second != no_object) continue;
+        wanted->second = id;
+        --missing;
+    }
+    return ids;
+}
+
 /// `known`: objects of `into` that may stand for those of `from` that would have their names.
 ObjectId append_objects(Graph& into, const Graph& from, std::string_view prefix,
                         const std::vector<MaterialId>& materials,
                         const std::unordered_map<std::string, ObjectId>& known = {}) {
     const std::size_t before = into.objects.size();
+    std::unordered_map<Primitive, ObjectId> primitives = primitives_of(from, into);
     std::vector<ObjectId> ids;
     for (const Object& object : from.objects) {
         if (object.primitive) {
-            ids.push_back(into.primitive(*object.primitive));
+            ObjectId& id = primitives[*object.primitive];
+            if (id == no_object) id = into.add(object);
+            ids.push_back(id);
             continue;
         }
         std::string name = fmt::format("{}.{}", prefix, object.name);

@@ -5,14 +5,12 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
+
+#include "compiler/graph/pattern_colours.h"
 
 namespace graftal {
 
 namespace {
-
-/// A pattern without colours of its own is darker and lighter than its material by this share.
-constexpr double usual_contrast = 0.35;
 
 bool find_kind(const SceneField& field, Diagnostics& diagnostics, PatternKind& kind) {
     const auto words = pattern_words();
@@ -118,11 +116,7 @@ void lower_pattern(const SceneFields& fields, Diagnostics& diagnostics, Material
     if (fields.flag("share"))
         fields.error("share", "'share' is that of a pattern on another one: put it after a 'plus'");
     add_layers(fields, diagnostics, pattern);
-    // The first pattern has colours about the material's own, and a new colour takes new ones along.
-    if (word || fields.flag("color")) {
-        pattern.low = (1 - usual_contrast) * material.rgb;
-        pattern.high = glm::min((1 + usual_contrast) * material.rgb, Rgb(1.0));
-    }
+    if (word || fields.flag("color")) take_own_colours(material);
     pattern.low = fields.color("low").value_or(pattern.low);
     pattern.high = fields.color("high").value_or(pattern.high);
     const auto good = [](double x) { return x >= -10 && x <= 10; };

@@ -105,10 +105,6 @@ void lower_texture(const SceneFields& fields, Lowering& lowering, Material& mate
             "around",
             "'around' sets how often a texture repeats around the shape, but the material has no texture");
     if (const auto around = fields.whole("around", 1, most_around)) material.around = *around;
-    // POV-Ray would bend and colour light in the holes too.
-    if (material.coverage < 1 && (material.has_coat() || material.absorption > 0))
-        fields.error_at_statement("the picture of this material has clear parts, so that it is no solid",
-                                  "leave out 'ior' and 'absorption'");
 }
 
 void lower_finish(const SceneFields& fields, Material& material) {
@@ -169,6 +165,10 @@ Material lower_material(const SceneFields& fields, const SceneStatement& stateme
     lower_finish(fields, material);
     lower_texture(fields, lowering, material);
     lower_pattern(fields, lowering.diagnostics, material);
+    // POV-Ray would bend and colour light in the holes too.
+    if (material.coverage < 1 && (material.has_coat() || material.absorption > 0))
+        fields.error_at_statement("the picture of this material has clear parts, so that it is no solid",
+                                  "leave out 'ior' and 'absorption'");
     return material;
 }
 
@@ -240,11 +240,9 @@ void note_parameter(ModelParameter::Kind kind, const std::string& name, const Ex
     const bool literal =
         text.kind == Expression::Kind::number ||
         (text.kind == Expression::Kind::unary && text.operands.front().kind == Expression::Kind::number);
-    std::vector<ModelParameter>& known = lowering.notes.parameters;
-    ModelParameter parameter{kind, name, value, text.span, literal};
     // Blocks of an L-system are evaluated for each member of their family.
-    if (std::ranges::find(known, text.span, &ModelParameter::span) == known.end())
-        known.push_back(std::move(parameter));
+    if (lowering.noted_places.emplace(text.span.file, text.span.begin).second)
+        lowering.notes.parameters.push_back({kind, name, value, text.span, literal});
 }
 
 Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer,

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -68,6 +70,7 @@ struct Lowering {
     std::size_t use_count = 0;                                   ///< `use` statements so far, in all files
     std::size_t known_failures = 0; ///< models that were asked for and had failed before
     LowerNotes notes = {};          ///< of the root model, apart from meshes
+    std::set<std::pair<FileId, std::uint32_t>> noted_places = {}; ///< where the parameters of the notes begin
 
     /// `--set` speaks to the root model only.
     bool at_root_model() const { return loading.size() <= 1; }

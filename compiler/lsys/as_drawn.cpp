@@ -1,18 +1,85 @@
 #include "compiler/lsys/as_drawn.h"
 
 #include <algorithm>
+#include <cctype>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "compiler/lsys/derive/deriver.h"
+#include "compiler/lsys/derive/word.h"
+#include "compiler/lsys/turtle/witness.h"
 #include "compiler/lsys/walk/plant.h"
-#include "compiler/lsys/walk/written_word.h"
+#include "compiler/lsys/walk/queries.h"
+#include "compiler/support/number.h"
 
 namespace graftal {
 
 namespace {
 
 constexpr std::uint64_t most_written = 5'000'000;
+
+bool is_long_name(std::string_view symbol) {
+    const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+    return symbol.size() > 1 && in_name(symbol.back());
+}
+
+/// A word as an axiom would have it: `F(1)[+(25)A(0.5)]`, numbers as the shortest decimals that read back to
+/// them, and blanks about names of several letters. It is the word before interpretation.
+class WrittenWord : public WordWitness {
+  public:
+    /// Both must outlive this. More modules are an error.
+    WrittenWord(const LsysGrammar& grammar, std::uint64_t most_modules, Diagnostics& diagnostics)
+        : grammar_(grammar), most_modules_(most_modules), diagnostics_(diagnostics) {}
+
+    std::string take() && { return std::move(text_); }
+
+    void add(SymbolId symbol, std::span<const double> parameters) {
+        const std::string& name = grammar_.symbols[symbol];
+        const bool apart = is_long_name(name) && !text_.empty() && text_.back() != ' ';
+        if (apart) text_ += ' ';
+        text_ += name;
+        for (std::size_t i = 0; i < parameters.size(); ++i)
+            text_ += (i == 0 ? "(" : ",") + shortest(parameters[i]);
+        if (!parameters.empty())
+            text_ += ')';
+        else if (is_long_name(name))
+            text_ += ' ';
+    }
+    bool begins(const Module& module, const Turtle&) override {
+        add(module.symbol, module.parameters);
+        return ++count_ <= most_modules_ || refuse_length(grammar_, most_modules_, 0, diagnostics_);
+    }
+    void closes_branch() override { text_ += ']'; }
+
+  private:
+    const LsysGrammar& grammar_;
+    std::uint64_t most_modules_;
+    Diagnostics& diagnostics_;
+    std::uint64_t count_ = 0;
+    std::string text_;
+};
+
+/// The word of a grammar after these steps, derived module by module; nothing after an error. O(modules of
+/// all words).
+std::optional<std::string> derived_word(LsysRewriter& rewriter, unsigned steps, std::uint64_t seed,
+                                        std::uint64_t max_modules, Diagnostics& diagnostics) {
+    const LsysGrammar& grammar = rewriter.grammar();
+    if (!rewriter.prepare(steps)) return std::nullopt;
+    LsysQueries queries(rewriter, diagnostics, seed);
+    LsysDeriver deriver(rewriter, diagnostics, seed, max_modules);
+    if (grammar.has_queries())
+        deriver.after_each_step(
+            [&](std::uint32_t step, ModuleString& word) { return queries.answer(step, word); });
+    const std::optional<ModuleString> word = deriver.derive(steps);
+    if (!word) return std::nullopt;
+    WrittenWord written(grammar, max_modules, diagnostics);
+    for (const ModuleId id : *word)
+        written.add(rewriter.modules().symbol(id), rewriter.modules().parameters(id));
+    return std::move(written).take();
+}
 
 bool has_word(const LsysGrammar& grammar, const LsysDrawOptions& options, Diagnostics& diagnostics) {
     if (options.steps) return true;

@@ -390,7 +390,14 @@ class Drawer {
         return std::nullopt;
     }
 
-    /// The part that would be drawn, without adding it to the graph.
+    /// The part that would be drawn after so many steps, without adding it to the graph.
+    std::optional<TurtlePart> sketch(const Graph& graph, unsigned steps) {
+        const unsigned before = std::exchange(steps_, steps);
+        std::optional<TurtlePart> part = sketch(graph);
+        steps_ = before;
+        return part;
+    }
+
     std::optional<TurtlePart> sketch(const Graph& graph) {
         Graph scratch = graph;
         ObjectPool pool(scratch);
@@ -403,11 +410,13 @@ class Drawer {
     /// The limit of figures that grow has no size of its own: the way from its start to its end is made one
     /// step long, upwards, or, where it comes back, its reach. Others stay as they are.
     Affine unit_from(const TurtlePart& part, const Graph& graph) {
-        steps_ /= 2;
-        const std::optional<TurtlePart> before = sketch(graph);
-        steps_ *= 2;
         constexpr double same = 1e-6;
-        if (!before || std::abs(part.reach - before->reach) <= same * part.reach) return {};
+        const auto early = sketch(graph, steps_ / 2), late = sketch(graph, steps_ - steps_ / 4);
+        if (!early || !late) return {};
+        // A figure that converges grows less and less: by one factor in as many steps.
+        const double gain = std::abs(part.reach - late->reach),
+                     gain_before = std::abs(late->reach - early->reach);
+        if (gain <= std::max(same * part.reach, (1 - same) * gain_before)) return {};
         const Vec3 chord = part.start_from_exit.translation;
         const double length = glm::length(chord);
         const double size = length > same * part.reach ? length : part.reach;

@@ -1,4 +1,4 @@
-#include "compiler/lsys/language.h"
+#include "compiler/lower/language.h"
 
 #include "compiler/lsys/lower.h"
 #include "compiler/lsys/parse/parser.h"

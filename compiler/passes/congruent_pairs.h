@@ -19,6 +19,7 @@
 #include <glm/matrix.hpp>
 
 #include "compiler/graph/graph.h"
+#include "compiler/graph/masters_first.h"
 #include "compiler/primitives/primitive.h"
 
 namespace graftal {
@@ -114,7 +115,8 @@ template<typename Shape> class CongruentPairs {
                 centre[id] = traits_of(*primitive).fixed_point(*primitive);
             edges += shape_.edges(id).size();
         }
-        const std::vector<std::uint32_t> order = masters_first();
+        const std::vector<std::uint32_t> order = masters_first(
+            shape_.size(), [&](std::uint32_t id) -> decltype(auto) { return shape_.edges(id); });
         const auto sweeps =
             static_cast<int>(std::clamp<std::uint64_t>(max_visits_for_centres / edges, 4, 200));
         for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -133,29 +135,6 @@ template<typename Shape> class CongruentPairs {
             if (change < 1e-14) break;
         }
         return centre;
-    }
-
-    /// Every node once, and after the nodes it leads to except those that lead back to it.
-    std::vector<std::uint32_t> masters_first() const {
-        std::vector<std::uint32_t> order;
-        std::vector<bool> met(shape_.size(), false);
-        std::vector<std::pair<std::uint32_t, std::size_t>> path;
-        for (std::uint32_t start = 0; start < shape_.size(); ++start) {
-            if (!met[start]) path.emplace_back(start, 0);
-            met[start] = true;
-            while (!path.empty()) {
-                const auto& edges = shape_.edges(path.back().first);
-                if (path.back().second == edges.size()) {
-                    order.push_back(path.back().first);
-                    path.pop_back();
-                    continue;
-                }
-                const std::uint32_t child = edges[path.back().second++].child;
-                if (!met[child]) path.emplace_back(child, 0);
-                met[child] = true;
-            }
-        }
-        return order;
     }
 
     static bool is_identity(const NodePair& pair) { return pair.a == pair.b && pair.b_from_a == Affine(); }

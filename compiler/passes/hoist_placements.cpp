@@ -4,22 +4,18 @@
 #include <vector>
 
 #include "compiler/graph/components.h"
+#include "compiler/graph/path.h"
 
 namespace graftal {
 
 namespace {
-
-Tint composed(const Tint& parent, const Tint& child) {
-    const PathTint path = PathTint(parent) * PathTint(child);
-    return path.alpha > 0 ? Tint{path.premultiplied / path.alpha, path.alpha} : Tint{};
-}
 
 /// An instance of what is placed in its master. The master is ending, or is only made smaller: its levels are
 /// those of the parent.
 Instance composed(const Instance& parent, const Instance& child) {
     return {child.master,
             parent.parent_from_child * child.parent_from_child,
-            composed(parent.tint, child.tint),
+            straight(PathTint(parent.tint) * PathTint(child.tint)),
             child.material ? child.material : parent.material,
             parent.span,
             parent.levels};

@@ -1,4 +1,3 @@
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -36,16 +35,9 @@ class Words {
     std::string_view rest_;
 };
 
-bool is_whole(std::from_chars_result read, std::string_view word) {
-    return read.ec == std::errc() && read.ptr == word.data() + word.size();
-}
-
 bool parse(std::string_view word, double& number) {
-    return is_whole(read_double(word.data(), word.data() + word.size(), number), word);
-}
-
-bool parse(std::string_view word, std::int64_t& number) {
-    return is_whole(std::from_chars(word.data(), word.data() + word.size(), number), word);
+    const auto [end, error] = read_double(word.data(), word.data() + word.size(), number);
+    return error == std::errc() && end == word.data() + word.size();
 }
 
 class ObjReader {
@@ -121,8 +113,9 @@ class ObjReader {
     }
 
     static bool read_index(std::string_view word, std::size_t count, std::int64_t& index) {
-        if (!parse(word, index)) return false;
-        index = index < 0 ? static_cast<std::int64_t>(count) + index : index - 1;
+        const auto number = parse_whole<std::int64_t>(word);
+        if (!number) return false;
+        index = *number < 0 ? static_cast<std::int64_t>(count) + *number : *number - 1;
         return index >= 0 && index < static_cast<std::int64_t>(count);
     }
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -111,10 +110,9 @@ class PlyReader {
         if (words[0] == "element" && words.size() == 3) {
             Element& element = elements_.emplace_back();
             element.name = words[1];
-            const auto [end, error] =
-                std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
-            return (error == std::errc() && end == words[2].data() + words[2].size()) ||
-                   fail(fmt::format("'{}' is no number of elements", words[2]));
+            const auto count = parse_whole<std::uint64_t>(words[2]);
+            element.count = count.value_or(0);
+            return count || fail(fmt::format("'{}' is no number of elements", words[2]));
         }
         const bool list = words.size() == 5 && words[1] == "list";
         if (words[0] != "property" || elements_.empty() || (!list && words.size() != 3))

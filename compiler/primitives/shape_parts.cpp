@@ -36,6 +36,11 @@ Vec3 point_of(const Triangle& t, double u, double v) {
     return (1 - root) * t[0] + root * (1 - v) * t[1] + root * v * t[2];
 }
 
+std::size_t AreaSampler::piece(double share) const {
+    const auto found = std::upper_bound(sums_.begin(), sums_.end() - 1, share * whole());
+    return static_cast<std::size_t>(found - sums_.begin());
+}
+
 Box box_about(std::span<const Vec3> points) {
     Box box;
     for (const Vec3& point : points)

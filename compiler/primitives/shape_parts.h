@@ -3,11 +3,11 @@
 // Parts that primitives share.
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "compiler/primitives/area_sampler.h"
 #include "compiler/primitives/primitive.h"
 
 namespace graftal {
@@ -27,6 +27,20 @@ Vec3 area_normal(const Triangle& triangle);
 
 /// The point of the triangle that two numbers of [0, 1) choose evenly.
 Vec3 point_of(const Triangle& triangle, double u, double v);
+
+/// Chooses among pieces of a surface by their areas.
+class AreaSampler {
+  public:
+    void add(double area) { sums_.push_back(whole() + area); }
+
+    double whole() const { return sums_.empty() ? 0 : sums_.back(); }
+
+    /// The piece that a number of [0, 1) chooses. Requires that there is one with an area.
+    std::size_t piece(double share) const;
+
+  private:
+    std::vector<double> sums_; ///< of the areas up to each piece
+};
 
 /// A ball about the middle of the points' box; its radius is less than a quarter too large.
 Ball ball_about(std::span<const Vec3> points);

@@ -1,4 +1,4 @@
-#include "compiler/rifs/language.h"
+#include "compiler/lower/language.h"
 
 #include "compiler/rifs/lower.h"
 #include "compiler/rifs/parser.h"

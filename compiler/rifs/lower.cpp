@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 
 #include "compiler/graph/components.h"
+#include "compiler/graph/path.h"
 #include "compiler/lower/inner_parameters.h"
 #include "compiler/lower/lower_settings.h"
 #include "compiler/lower/lower_transform.h"
@@ -37,12 +37,11 @@ struct Part {
     double terminal_px = 0;            ///< of a terminal
 };
 
-/// Two tints of one path as one (Hart 1992, eq. (9), (10)), straight again.
+/// Two tints of one path as one; one alone keeps its bits.
 Tint composed(const Tint& parent, const Tint& child) {
     if (parent.alpha == 0) return child;
     if (child.alpha == 0) return parent;
-    const PathTint path = PathTint(parent) * PathTint(child);
-    return {glm::min(path.premultiplied / path.alpha, Rgb(1.0)), std::min(path.alpha, 1.0)};
+    return straight(PathTint(parent) * PathTint(child));
 }
 
 class RifsLowering {

@@ -317,7 +317,7 @@ double aspect_of(const Camera& camera, const Subject& subject) {
     }
     const double width = most.x - least.x, height = most.y - least.y;
     if (!(width > 0 || height > 0)) return 1;
-    return width / std::max(height, 1e-6 * width);
+    return std::max(width, 1e-6 * height) / std::max(height, 1e-6 * width);
 }
 
 /// frame_camera(); leaves the subject as closely outlined as it was looked at.

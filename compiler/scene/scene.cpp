@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "compiler/graph/pattern_colours.h"
 #include "compiler/light/clouds.h"
 #include "compiler/scene/backdrop.h"
 #include "compiler/scene/framing.h"
@@ -18,11 +19,6 @@
 namespace graftal {
 
 namespace {
-
-/// A vector in the camera's axes (right, up, towards the viewer), in world axes.
-Vec3 from_camera(const Camera& camera, Vec3 v) {
-    return v.x * camera.right + v.y * camera.up - v.z * camera.direction;
-}
 
 /// A model without depth takes one light at right angles: a colour c is drawn as ambient * c + diffuse *
 /// light * c = c. The light is shadowless: a highlight would lie over the whole of it.
@@ -38,9 +34,7 @@ std::vector<Light> flat_lights(const Camera& camera, int axis) {
 
 /// Key and fill: on white of the default material they add up to less than 1 whichever way it faces.
 std::vector<Light> solid_lights(const Camera& camera, bool over_ground) {
-    Vec3 key = glm::normalize(from_camera(camera, {-0.6, 0.75, 0.75}));
-    // Over ground, an eye that looks up must not put the sun below the horizon.
-    if (over_ground && key.y < 0.3) key = glm::normalize(Vec3(key.x, 0.3, key.z));
+    const Vec3 key = to_key_light(camera, {-0.6, 0.75, 0.75}, over_ground);
     const Vec3 fill = glm::normalize(from_camera(camera, {0.85, 0.2, 0.6}));
     return {{.location = key, .sun = true, .rgb = {0.96, 0.93, 0.87}},
             {.location = fill, .sun = true, .rgb = {0.27, 0.29, 0.33}, .shadowless = true}};
@@ -113,6 +107,8 @@ Ground resolve(const GroundSetting& setting, const std::vector<Material>& materi
     if (setting.rgb) {
         ground.material.rgb = *setting.rgb;
         ground.material.texture.clear();
+        ground.material.coverage = 1;
+        if (ground.material.pattern) take_own_colours(ground.material);
     }
     return ground;
 }

@@ -13,8 +13,6 @@ namespace {
 
 /// In the camera's axes: right, up, towards the viewer.
 const Vec3 key_direction(-0.70, 0.85, 0.50);
-/// Over ground, an eye that looks up must not put the sun below the horizon.
-constexpr double least_key_height = 0.3;
 constexpr double key_angle_deg = 5;
 
 /// In sizes of the model: where its shade ends.
@@ -32,11 +30,18 @@ bool holds(const Box& box, Vec3 point) {
 
 } // namespace
 
+Vec3 from_camera(const Camera& camera, Vec3 v) {
+    return v.x * camera.right + v.y * camera.up - v.z * camera.direction;
+}
+
+Vec3 to_key_light(const Camera& camera, Vec3 v, bool over_ground) {
+    constexpr double least_height = 0.3;
+    const Vec3 key = glm::normalize(from_camera(camera, v));
+    return over_ground && key.y < least_height ? glm::normalize(Vec3(key.x, least_height, key.z)) : key;
+}
+
 void light_as_in_studio(View& view) {
-    const Camera& camera = view.camera;
-    Vec3 key = glm::normalize(key_direction.x * camera.right + key_direction.y * camera.up -
-                              key_direction.z * camera.direction);
-    if (view.ground && key.y < least_key_height) key = glm::normalize(Vec3(key.x, least_key_height, key.z));
+    const Vec3 key = to_key_light(view.camera, key_direction, view.ground.has_value());
     view.lights = {{.location = key, .sun = true, .rgb = {1.12, 1.04, 0.92}, .angle_deg = key_angle_deg}};
     SkyLight sky;
     sky.zenith = {0.40, 0.48, 0.62};

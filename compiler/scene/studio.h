@@ -6,6 +6,13 @@
 
 namespace graftal {
 
+/// A vector in the camera's axes (right, up, towards the viewer), in world axes.
+Vec3 from_camera(const Camera& camera, Vec3 v);
+
+/// The direction towards a key light, in world axes; `v`: in the camera's. Over ground, an eye that looks up
+/// does not put it below the horizon.
+Vec3 to_key_light(const Camera& camera, Vec3 v, bool over_ground);
+
 /// The light of a solid model that names none: a wide warm sun over the viewer's left shoulder, and a pale
 /// sky that is not seen. Requires the camera and the ground of the view.
 void light_as_in_studio(View& view);

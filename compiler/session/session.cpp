@@ -228,7 +228,8 @@ bool Session::need_viewed(const StageOptions& options, Compilation& compilation)
             ++runs_.viewed;
             return StageClock(compilation.times).run("frame", [&] {
                 const std::optional<unsigned> steps = levels_of(*analysed_.value(), options.lower.steps);
-                return look_at(analysed_.value(), steps, options.view, findings);
+                StageWork work = stage_work(options, analysed_.value()->work_seconds);
+                return look_at(analysed_.value(), steps, options.view, findings, charging(work));
             });
         });
         if (keep_ == Keep::nothing) analysed_.drop();

@@ -116,12 +116,13 @@ FrameObject framing_of(const AnalysedModel& model, std::optional<unsigned> steps
 
 /// Gives the model a new root at the place that the zoom asks for.
 std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<unsigned> steps,
-                                   const ViewOptions& options, Diagnostics& diagnostics) {
+                                   const ViewOptions& options, Diagnostics& diagnostics,
+                                   const Control& control) {
     std::optional<Vec3> look_at = options.zoom.eye ? std::nullopt : options.camera.look_at;
     if (!look_at && model.graph.settings.camera) look_at = model.graph.settings.camera->look_at;
     std::optional<Rerooted> rerooted =
         reroot({model.graph, model.components, model.bounds, steps, model.at}, options.zoom,
-               framing_of(model, steps, options), look_at, diagnostics);
+               framing_of(model, steps, options), look_at, diagnostics, control);
     if (!rerooted) return std::nullopt;
     auto zoomed = std::make_shared<AnalysedModel>();
     zoomed->path = model.path;
@@ -131,6 +132,7 @@ std::optional<ViewedModel> zoom_in(const AnalysedModel& model, std::optional<uns
     zoomed->contraction = model.contraction;
     zoomed->bounds = std::move(rerooted->bounds);
     zoomed->derivation = model.derivation;
+    zoomed->work_seconds = model.work_seconds; // without the zoom's, which its depth decides
     zoomed->clouds = model.clouds;
     return ViewedModel{std::move(zoomed), rerooted->steps, std::move(rerooted->view), rerooted->zoom,
                        std::make_shared<const NearWays>(std::move(rerooted->ways))};
@@ -196,7 +198,7 @@ std::optional<AnalysedModel> analyse(LoweredModel lowered, const std::optional<A
     model.written = {lowered.graph->objects.size(), edge_count(*lowered.graph)};
     // Names are those of the text only here: equal objects are merged next.
     if (at) {
-        model.at = find_path(*lowered.graph, *at, diagnostics);
+        model.at = find_path(*lowered.graph, *at, diagnostics, control);
         if (!model.at) return std::nullopt;
     }
     model.graph = optimise(std::move(*lowered.graph), model.at, options, times, control);
@@ -261,10 +263,11 @@ void warn_of_no_sight(const ViewedModel& viewed, const ViewOptions& options, Dia
 } // namespace
 
 std::optional<ViewedModel> look_at(std::shared_ptr<const AnalysedModel> model, std::optional<unsigned> steps,
-                                   const ViewOptions& options, Diagnostics& diagnostics) {
+                                   const ViewOptions& options, Diagnostics& diagnostics,
+                                   const Control& control) {
     std::optional<ViewedModel> viewed;
     if (options.zoom.active())
-        viewed = zoom_in(*model, steps, options, diagnostics);
+        viewed = zoom_in(*model, steps, options, diagnostics, control);
     else
         viewed = {model, steps, view_of(*model, steps, options, false), {}};
     if (!viewed) return std::nullopt;

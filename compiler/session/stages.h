@@ -47,9 +47,10 @@ bool refuse_divergent(const AnalysedModel& model, Diagnostics& diagnostics);
 std::optional<unsigned> levels_of(const AnalysedModel& model, std::optional<unsigned> asked);
 
 /// The model with a camera, and under a zoom with a new root. Nothing after an error. Requires a model that
-/// refuse_divergent() lets pass.
+/// refuse_divergent() lets pass. `control` counts the work of a zoom.
 std::optional<ViewedModel> look_at(std::shared_ptr<const AnalysedModel> model, std::optional<unsigned> steps,
-                                   const ViewOptions& options, Diagnostics& diagnostics);
+                                   const ViewOptions& options, Diagnostics& diagnostics,
+                                   const Control& control = no_control());
 
 /// The detail that is asked for, with what the view makes of it: levels, and lengths in its own units.
 DetailOptions resolved(DetailOptions asked, const ViewedModel& viewed);

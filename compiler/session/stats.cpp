@@ -6,6 +6,7 @@
 #include "compiler/analysis/counts.h"
 #include "compiler/analysis/volume.h"
 #include "compiler/languages/lower.h"
+#include "compiler/session/analyse_shapes.h"
 #include "compiler/session/frame_model.h"
 #include "compiler/support/printable.h"
 
@@ -36,6 +37,7 @@ constexpr StatsKey keys[] = {
     {"contraction certificate holds", "whether a second check of the proof succeeds"},
     {"dimension", "similarity dimension: 1 for a line, 2 for a surface, between them for a fern; right where "
                   "copies do not overlap"},
+    {"boxes", "- if too few sides of boxes were counted for a slope (--boxes)"},
     {"boxes dimension",
      "slope of the boxes that the figure meets over their side, both as logarithms (--boxes)"},
     {"boxes error", "standard error of this slope"},
@@ -43,9 +45,11 @@ constexpr StatsKey keys[] = {
     {"boxes most", "greatest slope from one side to its half"},
     {"boxes sides", "greatest and least side of the boxes that the slope is of"},
     {"boxes counts", "boxes of each of these sides, the greatest first"},
+    {"bounds", "- if the figure has none"},
     {"bounds min",
      "least x, y and z of a box that contains the figure: of its limit, if it has over 200 levels"},
     {"bounds max", "greatest x, y and z of this box"},
+    {"volume", "- if a plane has no end, or graftal would take too long to find it"},
     {"volume least",
      "volume that the solids of the figure enclose together, at least: those that may overlap "
      "count once"},
@@ -153,8 +157,6 @@ Json json_of(const AnalysedModel& model, std::optional<unsigned> steps, const So
              const BoxCount* boxes) {
     const Graph& graph = model.graph;
     const bool empty = graph.objects.empty();
-    const bool converges =
-        model.contraction.verdict == Verdict::proved || model.contraction.verdict == Verdict::acyclic;
     Json json = {
         {"model", model.path},
         {"language", model_language(sources)},
@@ -164,8 +166,9 @@ Json json_of(const AnalysedModel& model, std::optional<unsigned> steps, const So
         {"steps", or_null(model.derivation ? model.derivation->steps : steps)},
         {"primitives", empty ? Json("0") : or_null(count_leaves(graph, model.components, steps))},
         {"contraction", contraction_json(model)},
-        {"dimension",
-         converges && !empty ? or_null(similarity_dimension(graph, model.components)) : Json(nullptr)},
+        {"dimension", !empty && converges(model.contraction)
+                          ? or_null(similarity_dimension(graph, model.components))
+                          : Json(nullptr)},
     };
     if (boxes) json["boxes"] = boxes_json(*boxes);
     json.update({

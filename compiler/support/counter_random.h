@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace graftal {
@@ -33,15 +34,22 @@ class CounterRandom {
     std::uint64_t key_;
 };
 
-/// Random numbers one after the other, of one of the sequences of a seed.
+/// Random numbers one after the other.
 class RandomStream {
   public:
+    explicit RandomStream(CounterRandom random) : random_(random) {}
+    /// One of the sequences of a seed.
     RandomStream(std::uint64_t seed, std::uint64_t sequence)
-        : random_(CounterRandom(seed).sequence(sequence)) {}
+        : RandomStream(CounterRandom(seed).sequence(sequence)) {}
 
     std::uint64_t bits() { return random_(count_++); }
     /// A number of [0, 1).
     double unit() { return CounterRandom::unit(bits()); }
+    double between(double least, double most) { return least + (most - least) * unit(); }
+    /// Requires count > 0.
+    std::size_t below(std::size_t count) {
+        return static_cast<std::size_t>(unit() * static_cast<double>(count));
+    }
 
   private:
     CounterRandom random_;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace graftal {
 
@@ -19,5 +20,12 @@ std::from_chars_result read_double(const char* first, const char* last, double& 
 /// Reads all of `text` as a decimal number; nothing if it is malformed, overflows or is no number ("inf"). A
 /// number too small for a double is 0.
 std::optional<double> parse_number(std::string_view text);
+
+/// Reads all of `text` as a whole number; nothing if it is malformed or overflows.
+template<typename Whole> std::optional<Whole> parse_whole(std::string_view text) {
+    Whole value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
 
 } // namespace graftal

@@ -18,6 +18,9 @@ struct StagePrice {
     static constexpr double draw = 5e-8;          ///< a random number
     static constexpr double copied_object = 5e-6; ///< such as one under another hue
     static constexpr double copied_instance = 1.5e-6; ///< of such an object
+    // Zooms
+    static constexpr double name = 5e-8; ///< of an instance, compared with a step of an address
+    static constexpr double near = 7e-7; ///< a step down a zoom, or a part near it that is looked at
     // Checks, passes and strong components, all together
     static constexpr double object = 1.2e-5;
     static constexpr double instance = 8e-7;

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <unordered_map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "compiler/support/stage_price.h"
 
 namespace graftal {
 
@@ -160,36 +163,38 @@ int fit(std::string_view master, std::string_view name) {
 
 class Finder {
   public:
-    Finder(const Graph& graph, Diagnostics& diagnostics)
-        : graph_(graph), diagnostics_(diagnostics), object_(graph.root) {}
+    Finder(const Graph& graph, Diagnostics& diagnostics, const Control& control)
+        : graph_(graph), diagnostics_(diagnostics), meter_(control, "address", 1 << 16, StagePrice::name),
+          object_(graph.root) {}
 
     std::optional<GraphPath> run(const Address& address) {
         for (const AddressStep& step : address.steps)
-            if (!follow(step, false)) return std::nullopt;
-        std::vector<std::pair<ObjectId, std::size_t>> starts; // of the rounds
+            if (follow(step, false) != Outcome::taken) return std::nullopt;
+        std::unordered_map<ObjectId, std::size_t> starts; // of rounds, with the steps before each
         while (!address.cycle.empty()) {
-            const auto same = [&](const auto& start) { return start.first == object_; };
-            const auto again = std::find_if(starts.begin(), starts.end(), same);
-            if (again != starts.end()) {
-                path_.cycle.assign(path_.steps.begin() + static_cast<std::ptrdiff_t>(again->second),
+            const auto [start, fresh] = starts.try_emplace(object_, path_.steps.size());
+            if (!fresh) {
+                path_.cycle.assign(path_.steps.begin() + static_cast<std::ptrdiff_t>(start->second),
                                    path_.steps.end());
-                path_.steps.resize(again->second);
+                path_.steps.resize(start->second);
                 break;
             }
-            const bool may_end = !starts.empty();
-            starts.emplace_back(object_, path_.steps.size());
+            const bool may_end = starts.size() > 1;
             for (const AddressStep& step : address.cycle) {
-                if (follow(step, may_end)) continue;
-                if (!may_end) return std::nullopt;
-                return path_;
+                const Outcome outcome = follow(step, may_end);
+                if (outcome == Outcome::refused) return std::nullopt;
+                if (outcome == Outcome::ends) return path_;
             }
         }
         return path_;
     }
 
   private:
+    enum class Outcome { taken, ends, refused };
+
     /// Instances of the best fit.
-    std::vector<std::uint32_t> fitting(const Object& object, const std::string& name) const {
+    std::vector<std::uint32_t> fitting(const Object& object, const std::string& name) {
+        meter_.add(1 + object.instances.size());
         std::vector<std::uint32_t> found;
         int best = 1;
         for (std::uint32_t i = 0; i < object.instances.size(); ++i) {
@@ -201,35 +206,45 @@ class Finder {
         return found;
     }
 
-    void take(std::uint32_t instance) {
+    Outcome take(std::uint32_t instance) {
+        if (path_.steps.size() == most_address_steps) return refuse_long();
         path_.steps.push_back({object_, instance});
         object_ = graph_.objects[object_].instances[instance].master;
+        return Outcome::taken;
     }
 
-    /// Takes one step. False where there is none: an error, unless `may_end`.
-    bool follow(const AddressStep& step, bool may_end) {
+    /// Takes one step. Where there is none the path ends if it `may_end`.
+    Outcome follow(const AddressStep& step, bool may_end) {
         for (std::size_t passed = 0;; ++passed) {
             const Object& object = graph_.objects[object_];
             const std::vector<std::uint32_t> found = fitting(object, step.name);
-            if (step.index > 0 && step.index <= found.size()) return take(found[step.index - 1]), true;
-            if (step.index == 0 && found.size() == 1) return take(found[0]), true;
+            if (step.index > 0 && step.index <= found.size()) return take(found[step.index - 1]);
+            if (step.index == 0 && found.size() == 1) return take(found[0]);
             if (step.index == 0 && found.size() > 1) return refuse_ambiguous(object, step, found.size());
             if (object.instances.size() != 1 || passed > graph_.objects.size())
-                return !may_end && refuse_missing(object, step, found.size());
-            take(0);
+                return may_end ? Outcome::ends : refuse_missing(object, step, found.size());
+            if (const Outcome passage = take(0); passage != Outcome::taken) return passage;
         }
     }
 
-    bool refuse_ambiguous(const Object& object, const AddressStep& step, std::size_t count) {
+    Outcome refuse_long() {
+        diagnostics_
+            .error(graph_.objects[graph_.root].span,
+                   fmt::format("the address leads through more than {} instances", most_address_steps))
+            .with_hint("repeat fewer steps, or give an endless repetition a count");
+        return Outcome::refused;
+    }
+
+    Outcome refuse_ambiguous(const Object& object, const AddressStep& step, std::size_t count) {
         const std::string name = step.name.empty() ? "part" : step.name;
         diagnostics_
             .error(object.span, fmt::format("the address is ambiguous: '{}' has {} instances of '{}'",
                                             object.name, count, name))
             .with_hint(fmt::format("say which: {0}#1 to {0}#{1}", step.name, count));
-        return false;
+        return Outcome::refused;
     }
 
-    bool refuse_missing(const Object& object, const AddressStep& step, std::size_t count) {
+    Outcome refuse_missing(const Object& object, const AddressStep& step, std::size_t count) {
         constexpr std::size_t most_names = 12;
         const std::string wanted =
             step.index == 0 ? fmt::format("'{}'", step.name) : fmt::format("'{}#{}'", step.name, step.index);
@@ -237,7 +252,7 @@ class Finder {
             object.span, fmt::format("the address does not exist: '{}' has no part {}", object.name, wanted));
         if (count > 0) {
             error.with_hint(fmt::format("it has {} that fit", count));
-            return false;
+            return Outcome::refused;
         }
         std::vector<std::string> names;
         for (const Instance& instance : object.instances) {
@@ -250,11 +265,12 @@ class Finder {
         }
         error.with_hint(names.empty() ? "it is a primitive and has no parts"
                                       : fmt::format("its parts are {}", fmt::join(names, ", ")));
-        return false;
+        return Outcome::refused;
     }
 
     const Graph& graph_;
     Diagnostics& diagnostics_;
+    WorkMeter meter_;
     ObjectId object_;
     GraphPath path_;
 };
@@ -266,8 +282,9 @@ std::optional<Address> parse_address(std::string_view text, std::string& problem
     return Parser(text, problem).run();
 }
 
-std::optional<GraphPath> find_path(const Graph& graph, const Address& address, Diagnostics& diagnostics) {
-    return Finder(graph, diagnostics).run(address);
+std::optional<GraphPath> find_path(const Graph& graph, const Address& address, Diagnostics& diagnostics,
+                                   const Control& control) {
+    return Finder(graph, diagnostics, control).run(address);
 }
 
 } // namespace graftal

@@ -8,6 +8,7 @@
 
 #include "compiler/analysis/contraction.h"
 #include "compiler/graph/graph.h"
+#include "compiler/support/control.h"
 #include "compiler/support/diagnostics.h"
 
 namespace graftal {
@@ -31,7 +32,7 @@ struct Address {
     bool operator==(const Address&) const = default;
 };
 
-/// Steps that an address may have, its repetitions written out.
+/// Steps that an address may have, its repetitions written out, and that its path may have.
 inline constexpr std::size_t most_address_steps = 1'000'000;
 
 /// Reads an address. Nothing where it is malformed: `problem` then says why, in lower case.
@@ -51,7 +52,9 @@ struct GraphPath {
 
 /// Finds the address. A name fits a master of that name; else one whose name ends in it after a dot (of an
 /// imported model); else one that has it in front of its arguments. Objects of one instance that no name
-/// fits are passed through. Endless repetition ends where the graph does. Errors go to `diagnostics`.
-std::optional<GraphPath> find_path(const Graph& graph, const Address& address, Diagnostics& diagnostics);
+/// fits are passed through. Endless repetition ends where the graph does. Errors go to `diagnostics`; a path
+/// of more than most_address_steps is one. `control` counts the names that are compared.
+std::optional<GraphPath> find_path(const Graph& graph, const Address& address, Diagnostics& diagnostics,
+                                   const Control& control = no_control());
 
 } // namespace graftal

@@ -11,11 +11,12 @@ namespace graftal {
 namespace {
 
 std::optional<std::int64_t> parse_exponent(std::string_view text) {
-    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    constexpr std::int64_t most = 1'000'000'000'000'000'000;
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
+    return value < -most || value > most ? std::nullopt : std::optional(value);
 }
 
 /// base^exponent by repeated squaring: exact for powers of two, else to about log2(exponent) roundings.

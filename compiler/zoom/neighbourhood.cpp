@@ -55,8 +55,9 @@ double distance_to_box(const Affine& map, const Box& box, Vec3 point) {
 } // namespace
 
 Neighbourhood::Neighbourhood(const Graph& graph, const Components& components,
-                             const std::vector<ObjectBounds>& bounds, std::optional<unsigned> steps)
-    : graph_(graph), components_(components), bounds_(bounds), steps_(steps) {
+                             const std::vector<ObjectBounds>& bounds, std::optional<unsigned> steps,
+                             WorkMeter& meter)
+    : graph_(graph), components_(components), bounds_(bounds), steps_(steps), meter_(meter) {
     own_.object = graph.root;
 }
 
@@ -103,7 +104,7 @@ bool Neighbourhood::divisible(const NearPiece& piece) const {
 
 bool Neighbourhood::keep(NearPiece first, Vec3 focus, double reach, double size,
                          std::vector<NearPiece>& kept) {
-    Walk<NearPiece> walk;
+    Walk<NearPiece> walk({.meter = &meter_});
     walk.push(std::move(first));
     for (NearPiece piece; walk.next(piece);) {
         if (++looks_ > most_looks) return false;
@@ -127,6 +128,8 @@ bool Neighbourhood::keep(NearPiece first, Vec3 focus, double reach, double size,
 }
 
 Neighbourhood::Outcome Neighbourhood::descend(std::uint32_t instance, Vec3 focus, double reach) {
+    looks_ = 0;
+    meter_.add();
     const std::vector<Instance>& instances = graph_.objects[own_.object].instances;
     const Instance& step = instances[instance];
     if (is_singular(step.parent_from_child)) return Outcome::flat;
@@ -158,16 +161,27 @@ Neighbourhood::Outcome Neighbourhood::descend(std::uint32_t instance, Vec3 focus
         snap(piece);
     tidy(kept, size);
     others_ = std::move(kept);
+    forget_ways();
     return Outcome::done;
 }
 
 bool Neighbourhood::spread(Vec3 focus, double reach, double size) {
+    looks_ = 0;
     std::vector<NearPiece> kept;
     if (!keep(own_, focus, reach, size, kept)) return false;
     for (const NearPiece& piece : others_)
         if (!keep(piece, focus, reach, size, kept)) return false;
     others_ = std::move(kept);
     return true;
+}
+
+void Neighbourhood::forget_ways() {
+    if (ways_.steps() < most_way_steps_) return;
+    std::vector<std::uint32_t*> ways = {&own_.way};
+    for (NearPiece& piece : others_)
+        ways.push_back(&piece.way);
+    ways_.keep_only(ways);
+    most_way_steps_ = std::max(most_way_steps_, 2 * ways_.steps());
 }
 
 void Neighbourhood::snap(NearPiece& piece) {

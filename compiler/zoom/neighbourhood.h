@@ -9,6 +9,7 @@
 #include "compiler/analysis/bounding.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
+#include "compiler/support/control.h"
 #include "compiler/zoom/near_ways.h"
 
 namespace graftal {
@@ -35,9 +36,9 @@ struct NearPiece {
 /// neighbour is lost once rounding hides where it lies.
 class Neighbourhood {
   public:
-    /// `steps`: levels in all; nothing if there is no limit.
+    /// `steps`: levels in all; nothing if there is no limit. `meter` counts steps down and pieces looked at.
     Neighbourhood(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds,
-                  std::optional<unsigned> steps);
+                  std::optional<unsigned> steps, WorkMeter& meter);
 
     enum class Outcome { done, flat, too_many, no_level };
 
@@ -56,13 +57,14 @@ class Neighbourhood {
     /// The paths of all pieces; to be taken when the descent has ended.
     NearWays& ways() { return ways_; }
     std::size_t lost() const { return lost_; }
-    /// True if Outcome::too_many was for most_looks, and not for most_pieces.
+    /// True if there were too many for most_looks at last, and not for most_pieces.
     bool looked_too_often() const { return looks_ > most_looks; }
     /// Radius of the ball of a piece, in the frame.
     double radius(const NearPiece& piece) const;
 
     static constexpr std::size_t most_pieces = 20'000;
-    /// Pieces that are looked at in all: of crushed ones, countless may come within reach and none lie there.
+    /// Pieces that one descend() or spread() looks at: of crushed ones, countless may come within reach and
+    /// none lie there.
     static constexpr std::uint64_t most_looks = 2'000'000;
 
   private:
@@ -76,6 +78,8 @@ class Neighbourhood {
     bool divisible(const NearPiece& piece) const;
     /// Appends the parts of the piece that are in reach and no larger than `size`.
     bool keep(NearPiece piece, Vec3 focus, double reach, double size, std::vector<NearPiece>& kept);
+    /// Keeps the memory of ways to about that of the pieces that are left.
+    void forget_ways();
     void snap(NearPiece& piece);
     void tidy(std::vector<NearPiece>& pieces, double size) const;
 
@@ -83,14 +87,16 @@ class Neighbourhood {
     const Components& components_;
     const std::vector<ObjectBounds>& bounds_;
     std::optional<unsigned> steps_;
+    WorkMeter& meter_;
     NearPiece own_;
     std::vector<NearPiece> others_;
     std::map<std::pair<ObjectId, ObjectId>, std::vector<KnownMap>>
         known_of_pair_; ///< object reached and piece
     std::vector<KnownMap> known_;
     NearWays ways_;
+    std::size_t most_way_steps_ = 1 << 16; ///< before some are forgotten
     std::size_t lost_ = 0;
-    std::uint64_t looks_ = 0;
+    std::uint64_t looks_ = 0; ///< of the last descend() or spread()
 };
 
 } // namespace graftal

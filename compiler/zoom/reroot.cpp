@@ -10,6 +10,7 @@
 #include "compiler/graph/path.h"
 #include "compiler/scene/framing.h"
 #include "compiler/support/number_range.h"
+#include "compiler/support/stage_price.h"
 #include "compiler/zoom/focus.h"
 #include "compiler/zoom/neighbourhood.h"
 #include "compiler/zoom/zoom_scale.h"
@@ -41,9 +42,10 @@ Mat3 upright_rotation(const Mat3& map) {
 class Rerooter {
   public:
     Rerooter(const ZoomModel& model, const ZoomRequest& request, const FrameObject& frame_object,
-             Diagnostics& diagnostics)
+             Diagnostics& diagnostics, const Control& control)
         : model_(model), request_(request), frame_object_(frame_object), diagnostics_(diagnostics),
-          around_(model.graph, model.components, model.bounds, model.steps) {}
+          meter_(control, "frame", 1 << 14, StagePrice::near),
+          around_(model.graph, model.components, model.bounds, model.steps, meter_) {}
 
     std::optional<Rerooted> run(const std::optional<Vec3>& look_at) {
         if (!find_focus(look_at)) return std::nullopt;
@@ -115,6 +117,7 @@ class Rerooter {
         const double radius = model_.bounds[model_.graph.root].ball.radius;
         const double depth = glm::dot(world_focus - camera.location, camera.direction);
         camera.location = request_.eye.value_or(-std::max(depth, 1e-3 * radius) * camera.direction);
+        view.lens = {}; // its depth is that of the camera before
         const double zoom = request_.zoom->times(1);
         for (Light& light : view.lights)
             if (!light.sun)
@@ -146,15 +149,21 @@ class Rerooter {
                (haze.is_even() || (is_size(haze.height) && is_place(Vec3(haze.base))));
     }
 
-    /// A light beyond all distances is a sun, and a lamp reaches no farther. `linear`: of its sides.
+    /// A light beyond all distances is a sun, and a lamp reaches no farther. One at the focus, of no
+    /// direction, stays there. `linear`: of its sides.
     void move(Light& light, Vec3 location, Vec3 direction, const Mat3& linear) {
         const double far = 1e3 * glm::length(result_.view.camera.location);
-        light.sun = !(glm::length(location) <= far);
+        const bool at_focus = !light.sun && direction == Vec3(0.0);
+        if (at_focus && !std::isfinite(glm::length(location))) location = focus_in_picture();
+        light.sun = !at_focus && !(glm::length(location) <= far);
         light.location = light.sun ? glm::normalize(direction) : location;
         for (Vec3* const side : {&light.a, &light.b}) {
             const Vec3 moved = linear * *side;
             const double length = glm::length(moved);
-            *side = light.sun ? Vec3(0.0) : length <= far ? moved : far * glm::normalize(*side);
+            if (light.sun || length <= far)
+                *side = light.sun ? Vec3(0.0) : moved;
+            else if (*side != Vec3(0.0))
+                *side = far * glm::normalize(*side);
         }
     }
 
@@ -406,10 +415,6 @@ class Rerooter {
         root.instances.push_back(plane);
     }
 
-    static Tint straight(const PathTint& path) {
-        return path.alpha > 0 ? Tint{path.premultiplied / path.alpha, path.alpha} : Tint{};
-    }
-
     void warn(double error_px, std::size_t too_large) {
         if (error_px > visible_px)
             diagnostics_.warning(
@@ -451,6 +456,7 @@ class Rerooter {
     const FrameObject& frame_object_;
     Diagnostics& diagnostics_;
     Focus focus_;
+    WorkMeter meter_;
     Neighbourhood around_;
     double reach_ = 0;
     std::optional<GroundPlane> ground_;
@@ -462,8 +468,8 @@ class Rerooter {
 
 std::optional<Rerooted> reroot(const ZoomModel& model, const ZoomRequest& request,
                                const FrameObject& frame_object, const std::optional<Vec3>& look_at,
-                               Diagnostics& diagnostics) {
-    return Rerooter(model, request, frame_object, diagnostics).run(look_at);
+                               Diagnostics& diagnostics, const Control& control) {
+    return Rerooter(model, request, frame_object, diagnostics, control).run(look_at);
 }
 
 } // namespace graftal

@@ -14,6 +14,7 @@
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
 #include "compiler/scene/scene.h"
+#include "compiler/support/control.h"
 #include "compiler/support/diagnostics.h"
 #include "compiler/zoom/address.h"
 #include "compiler/zoom/magnification.h"
@@ -43,7 +44,8 @@ struct Rerooted {
     View view;
     Magnification zoom;    ///< how much larger than in the world lengths are
     std::size_t depth = 0; ///< instances from the old root to where the new one begins
-    NearWays ways;         ///< from the old root to the masters of the new root's instances, one each
+    NearWays ways; ///< from the old root to the masters of the new root's instances; a plane of the ground,
+                   ///< the last instance, has none
 };
 
 /// The model that a new root is made from.
@@ -60,12 +62,13 @@ struct ZoomModel {
 using FrameObject = std::function<View(ObjectId object, unsigned used_levels)>;
 
 /// Makes a new root. With a zoom the camera keeps its direction, angle and distance, and looks at the focus;
-/// everything is enlarged about it. With an address alone, the frame of its object becomes the world, and
-/// `frame_object` makes the picture; only the lights stay as in the model. `look_at`: a point to zoom about.
-/// Errors, in `diagnostics`: an address that does not exist or is deeper than the steps; a point with too
-/// few digits for the depth; maps that flatten space more than numbers can follow.
+/// everything is enlarged about it, and the picture has no lens. With an address alone, the frame of its
+/// object becomes the world, and `frame_object` makes the picture; only the lights stay as in the model.
+/// `look_at`: a point to zoom about. Errors, in `diagnostics`: an address that does not exist or is deeper
+/// than the steps; a point with too few digits for the depth; maps that flatten space more than numbers can
+/// follow. `control` counts steps down, and parts that are looked at.
 std::optional<Rerooted> reroot(const ZoomModel& model, const ZoomRequest& request,
                                const FrameObject& frame_object, const std::optional<Vec3>& look_at,
-                               Diagnostics& diagnostics);
+                               Diagnostics& diagnostics, const Control& control = no_control());
 
 } // namespace graftal

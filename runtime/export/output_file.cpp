@@ -1,7 +1,6 @@
 #include "runtime/export/output_file.h"
 
 #include <cerrno>
-#include <cstring>
 
 #include "compiler/detail/coarser.h"
 
@@ -15,9 +14,7 @@ OutputFile::OutputFile(const std::string& path, std::uint64_t most_bytes, bool& 
 }
 
 void OutputFile::fail(int reason) {
-    if (status_.ok())
-        status_ =
-            Status::failure(fmt::format("cannot write '{}': {}", pending_.path(), std::strerror(reason)));
+    if (status_.ok()) status_ = system_failure("write", pending_.path(), reason);
 }
 
 void OutputFile::flush() {

@@ -49,15 +49,11 @@ class OutputFile {
   private:
     static constexpr std::size_t room = 1 << 16;
 
-    struct Close {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
-
     void flush();
     void fail(int reason);
 
     PendingFile pending_;
-    std::unique_ptr<std::FILE, Close> file_;
+    OpenFile file_;
     std::string buffer_;
     std::uint64_t written_ = 0;
     std::uint64_t most_bytes_;

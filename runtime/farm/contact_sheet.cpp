@@ -158,7 +158,7 @@ Status choose_cell(const std::string& first, std::uint64_t columns, Cell& cell) 
     HeadSink head;
     const Status status = read_rows(first, head);
     if (head.width == 0) return status;
-    const int room = most_sheet_width / static_cast<int>(columns) - gap;
+    const int room = (most_sheet_width - gap) / static_cast<int>(columns) - gap;
     cell.width = std::clamp(room, 1, std::min(largest_cell, head.width));
     const std::int64_t height = static_cast<std::int64_t>(cell.width) * head.height / head.width;
     cell.height = static_cast<int>(std::clamp<std::int64_t>(height, 1, 4 * cell.width));
@@ -170,7 +170,7 @@ Status choose_cell(const std::string& first, std::uint64_t columns, Cell& cell) 
 Status write_contact_sheet(const std::string& path, const std::vector<SheetPicture>& pictures,
                            std::uint64_t columns, const ImageMetadata& metadata, const CancelFlag& cancel,
                            const std::function<void(std::size_t)>& on_picture) {
-    columns = std::clamp<std::uint64_t>(columns, 1, most_sheet_width / (gap + 1));
+    columns = std::clamp<std::uint64_t>(columns, 1, (most_sheet_width - gap) / (gap + 1));
     Cell cell{};
     if (Status status = choose_cell(pictures.front().path, columns, cell); !status.ok()) return status;
     SheetRows rows(pictures, columns, cell, cancel, on_picture);

@@ -87,9 +87,9 @@ std::string status_text(const JobFolder& folder, const Job& job, const JobStatus
                             "{:.2f} s; the largest {} MiB\n",
                             status.mean_seconds, 100 * status.share_beside_pixels, status.slowest_task,
                             status.slowest_seconds, status.peak_bytes >> 20);
-    if (status.runs > status.tasks - status.failures.size() - status.begun && status.runs > status.done)
-        text += fmt::format("runs: {}, {} of them ended without a result\n", status.runs,
-                            status.runs - status.done);
+    if (const auto ended = status.done + status.begun; status.runs > ended)
+        text +=
+            fmt::format("runs: {}, {} of them ended without a result\n", status.runs, status.runs - ended);
     for (std::size_t i = 0; i < std::min(status.failures.size(), most_failures_shown); ++i)
         text += fmt::format("task {} failed: {} (all of it: {})\n", status.failures[i].task,
                             escaped(status.failures[i].message), folder.log(status.failures[i].task));

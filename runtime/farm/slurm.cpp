@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/support/number.h"
 #include "runtime/farm/job_json.h"
 #include "runtime/farm/task_records.h"
 
@@ -111,14 +112,14 @@ Status write_array_script(const JobFolder& folder, std::size_t number,
 
 std::string parse_job_id(const std::string& printed) {
     const std::string id = printed.substr(0, printed.find_first_of(";\n"));
-    return whole_number(id) ? id : "";
+    return parse_whole<std::uint64_t>(id) ? id : "";
 }
 
 std::set<std::uint64_t> parse_indices(const std::string& printed) {
     std::set<std::uint64_t> indices;
     std::istringstream words(printed);
     for (std::string word; words >> word;)
-        if (const auto index = whole_number(word)) indices.insert(*index);
+        if (const auto index = parse_whole<std::uint64_t>(word)) indices.insert(*index);
     return indices;
 }
 
@@ -128,7 +129,7 @@ std::uint64_t parse_array_size(const std::string& printed) {
     std::istringstream words(printed.substr(at));
     std::string word;
     words >> word >> word >> word; // MaxArraySize = 1001
-    const auto size = whole_number(word);
+    const auto size = parse_whole<std::uint64_t>(word);
     return size && *size > 1 ? *size - 1 : usual_array_size;
 }
 

@@ -1,12 +1,12 @@
 #include "runtime/farm/task_records.h"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "compiler/support/number.h"
 #include "runtime/farm/job_json.h"
 #include "runtime/system/files_below.h"
 
@@ -28,13 +28,6 @@ std::string host_name() {
 bool has_part(const JobFolder& folder, const Job& job, std::uint64_t task, const TaskRecord& record) {
     const std::string path = folder.part(job, task);
     return bytes_below(folder.path(), folder.name_of(path)) == record.bytes;
-}
-
-std::optional<std::uint64_t> whole_number(std::string_view text) {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
 }
 
 double now_seconds() {
@@ -75,7 +68,7 @@ std::optional<TaskRecord> read_record(const JobFolder& folder, std::uint64_t tas
         if (json.contains("bytes")) record.bytes = whole_of_json(json["bytes"]);
         record.digest = json.value("digest", "");
         record.ended = amount_of_json(json.at("ended"));
-        if (json.contains("stats")) record.stats = json["stats"].dump();
+        if (json.contains("stats") && json["stats"].is_object()) record.stats = json["stats"].dump();
     });
     return problem.empty() ? std::optional(record) : std::nullopt;
 }
@@ -131,8 +124,9 @@ std::optional<std::vector<std::uint64_t>> parse_task_list(std::string_view text,
         const std::size_t comma = text.find(',');
         const std::string_view range = text.substr(0, comma);
         const std::size_t dash = range.find('-');
-        const auto from = whole_number(range.substr(0, dash));
-        const auto to = dash == std::string_view::npos ? from : whole_number(range.substr(dash + 1));
+        const auto from = parse_whole<std::uint64_t>(range.substr(0, dash));
+        const auto to =
+            dash == std::string_view::npos ? from : parse_whole<std::uint64_t>(range.substr(dash + 1));
         if (!from || !to || *from < 1 || *to < *from || *to > most) return std::nullopt;
         if (!tasks.empty() && *from <= tasks.back()) return std::nullopt;
         for (std::uint64_t task = *from; task <= *to; ++task)

@@ -50,9 +50,6 @@ std::vector<std::uint64_t> missing_tasks(const JobFolder& folder, const Job& job
 std::string task_list_text(const std::vector<std::uint64_t>& tasks);
 std::optional<std::vector<std::uint64_t>> parse_task_list(std::string_view text, std::uint64_t most);
 
-/// A text of digits alone.
-std::optional<std::uint64_t> whole_number(std::string_view text);
-
 /// Seconds since 1970.
 double now_seconds();
 

@@ -1,10 +1,7 @@
 #include "runtime/image_files/animation.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <memory>
 #include <numeric>
 #include <optional>
 
@@ -16,14 +13,6 @@
 namespace graftal {
 
 namespace {
-
-struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-Status write_failure(const std::string& path) {
-    return Status::failure(fmt::format("cannot write '{}': {}", path, std::strerror(errno)));
-}
 
 /// Writes one animated PNG, chunk by chunk.
 class AnimatedPng {
@@ -37,7 +26,7 @@ class AnimatedPng {
 
     Status open(const std::string& temporary) {
         file_.reset(std::fopen(temporary.c_str(), "wb"));
-        return file_ ? put(png_signature) : write_failure(path_);
+        return file_ ? put(png_signature) : system_failure("write", path_);
     }
 
     Status add(const std::string& frame) {
@@ -64,13 +53,14 @@ class AnimatedPng {
     Status close() {
         const Status status = put_chunk("IEND", {});
         if (!status.ok()) return status;
-        return std::fclose(file_.release()) == 0 ? Status() : write_failure(path_);
+        return std::fclose(file_.release()) == 0 ? Status() : system_failure("write", path_);
     }
 
   private:
     Status put(std::string_view text) {
-        return std::fwrite(text.data(), 1, text.size(), file_.get()) == text.size() ? Status()
-                                                                                    : write_failure(path_);
+        return std::fwrite(text.data(), 1, text.size(), file_.get()) == text.size()
+                   ? Status()
+                   : system_failure("write", path_);
     }
     Status put_chunk(std::string_view type, std::string_view data) { return put(png_chunk(type, data)); }
 
@@ -98,7 +88,7 @@ class AnimatedPng {
     std::string path_;
     std::size_t frame_count_;
     std::string delay_;
-    std::unique_ptr<std::FILE, Close> file_;
+    OpenFile file_;
     std::string header_;
     std::uint32_t sequence_ = 0;
     bool first_ = true;

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -14,15 +13,11 @@
 
 #include "compiler/support/check.h"
 #include "runtime/image_files/png_chunks.h"
+#include "runtime/system/file.h"
 
 namespace graftal {
 
 namespace {
-
-struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using OpenFile = std::unique_ptr<std::FILE, CloseFile>;
 
 /// The first complaint of libpng; of fixed size, for no destructor would run on the way out of libpng.
 struct Complaint {

@@ -8,6 +8,7 @@
 #include "compiler/support/small_letters.h"
 #include "compiler/support/srgb.h"
 #include "runtime/image_files/image_files.h"
+#include "runtime/image_files/reducing_sink.h"
 
 namespace graftal {
 
@@ -22,89 +23,46 @@ bool is_linear_name(const std::string& path) {
     return ending == ".exr" || ending == ".hdr";
 }
 
-/// Takes the rows of a file; each texel is the mean of several pixels across and down.
-class SkySink : public RowSink {
-  public:
-    SkySink(bool linear, std::uint64_t most) : linear_(linear), most_(most) {}
-
-    std::string begin(int width, int height, int channels) override {
-        const auto count = [](int w, int h) {
-            return static_cast<std::uint64_t>(w) * static_cast<std::uint64_t>(h);
-        };
-        if (count(width, height) > most_file_texels) return "it is too large";
-        loaded_.file_width = width;
-        loaded_.file_height = rows_left_ = height;
-        channels_ = static_cast<std::size_t>(channels);
-        const auto across = [this](int size) { return (size + reduced_ - 1) / reduced_; };
-        while (count(across(width), across(height)) > most_ ||
-               std::max(across(width), across(height)) > most_sky_columns)
-            ++reduced_;
-        width_ = across(width);
-        height_ = across(height);
-        texels_.reserve(count(width_, height_));
-        cells_.resize(static_cast<std::size_t>(width_));
-        return {};
-    }
-
-    void take(const float* samples) override {
-        for (int x = 0; x < loaded_.file_width; ++x) {
-            Cell& cell = cells_[static_cast<std::size_t>(x / reduced_)];
-            cell.sum += light_of(samples + static_cast<std::size_t>(x) * channels_);
-            ++cell.count;
-        }
-        --rows_left_;
-        if (++rows_ < reduced_ && rows_left_ > 0) return;
-        rows_ = 0;
-        for (Cell& cell : cells_) {
-            const Rgb mean = cell.sum / cell.count;
-            texels_.push_back(
-                {static_cast<float>(mean.r), static_cast<float>(mean.g), static_cast<float>(mean.b)});
-            cell = Cell();
-        }
-    }
-
-    LoadedSkyPicture finished() && {
-        loaded_.picture = std::make_shared<const SkyPicture>(width_, height_, std::move(texels_));
-        return std::move(loaded_);
-    }
-
-  private:
+/// Pixels of a sky's picture. A texel is the mean of several.
+struct SkyPixels {
+    using Texel = SkyPicture::Texel;
     struct Cell {
         Rgb sum{0.0};
         double count = 0;
     };
 
-    Rgb light_of(const float* samples) {
+    void add(const float* samples, std::size_t channels, Cell& cell) {
         Rgb light;
-        bool mended = false;
+        bool is_mended = false;
         for (int c = 0; c < 3; ++c) {
-            const float sample = samples[channels_ >= 3 ? c : 0];
-            const double value = linear_ ? sample : linear_from_srgb(sample);
+            const float sample = samples[channels >= 3 ? c : 0];
+            const double value = linear ? sample : linear_from_srgb(sample);
             light[c] = value > 0 ? std::min<double>(value, most_radiance) : 0;
-            mended = mended || !(value >= 0 && value <= most_radiance);
+            is_mended = is_mended || !(value >= 0 && value <= most_radiance);
         }
-        loaded_.mended += mended;
-        return light;
+        mended += is_mended;
+        cell.sum += light;
+        ++cell.count;
     }
 
-    bool linear_;
-    std::uint64_t most_;
-    LoadedSkyPicture loaded_;
-    int width_ = 0, height_ = 0;
-    int reduced_ = 1;
-    int rows_left_ = 0;
-    int rows_ = 0; ///< of the file, in the cells
-    std::size_t channels_ = 0;
-    std::vector<Cell> cells_;
-    std::vector<SkyPicture::Texel> texels_;
+    static Texel texel(const Cell& cell) {
+        const Rgb mean = cell.sum / cell.count;
+        return {static_cast<float>(mean.r), static_cast<float>(mean.g), static_cast<float>(mean.b)};
+    }
+
+    bool linear = false;
+    std::uint64_t mended = 0;
 };
 
 } // namespace
 
 Status read_sky_picture(const std::string& path, std::uint64_t most_texels, LoadedSkyPicture& loaded) {
-    SkySink sink(is_linear_name(path), most_texels);
+    SkyPixels pixels{is_linear_name(path)};
+    ReducingSink sink(pixels, most_texels, most_sky_columns);
     Status status = read_rows(path, sink);
-    if (status.ok()) loaded = std::move(sink).finished();
+    if (status.ok())
+        loaded = {std::make_shared<const SkyPicture>(sink.width, sink.height, std::move(sink.texels)),
+                  sink.shape.width, sink.shape.height, pixels.mended};
     return status;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/image_files/image_files.h"
+#include "runtime/image_files/reducing_sink.h"
 #include "runtime/image_files/sky_file.h"
 
 namespace graftal {
@@ -20,120 +21,81 @@ constexpr std::uint64_t least_texels = 1u << 12;
 constexpr std::uint64_t most_sky_texels = 1u << 23;
 constexpr std::uint64_t texels_a_sky_texel = 4; // 16 bytes, with what sampling needs
 
-std::uint64_t texel_count(int width, int height) {
-    return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-}
-
 std::uint64_t texels_of(const LoadedSkyPicture& sky) {
-    return texels_a_sky_texel * texel_count(sky.picture->width(), sky.picture->height());
+    return texels_a_sky_texel * sky.picture->texels().size();
 }
 
-/// Makes a texture of the rows of a file, reduced to `most` texels.
-class TextureSink : public RowSink {
+/// Pixels of a texture's picture.
+class TexturePixels {
   public:
-    TextureSink(bool linear, std::uint64_t most) : linear_(linear), most_(most) {
+    using Texel = Texture::Texel;
+    /// The pixels that become one texel.
+    struct Cell {
+        Texel first;
+        Rgb light{0.0}; ///< of the solid ones
+        int solid = 0;
+        int count = 0;
+    };
+
+    explicit TexturePixels(bool linear) : linear_(linear) {
         for (int level = 0; level < 256; ++level)
             decoded_[static_cast<std::size_t>(level)] = srgb_decoded(static_cast<std::uint8_t>(level));
     }
 
-    std::string begin(int width, int height, int channels) override {
-        if (texel_count(width, height) > most_file_texels) return "it is too large";
-        texture_.file_width = width;
-        texture_.file_height = height;
-        rows_left_ = height;
-        channels_ = static_cast<std::size_t>(channels);
-        const auto across = [this](int size) { return (size + reduced_ - 1) / reduced_; };
-        while (texel_count(across(width), across(height)) > most_)
-            ++reduced_;
-        texture_.width = across(width);
-        texture_.height = across(height);
-        texture_.texels.reserve(texel_count(texture_.width, texture_.height));
-        cells_.resize(static_cast<std::size_t>(texture_.width));
-        return {};
+    void add(const float* samples, std::size_t channels, Cell& cell) const {
+        const Texel texel = texel_of(samples, channels);
+        ++cell.count;
+        if (texel.clear) return;
+        if (cell.solid++ == 0) cell.first = texel;
+        cell.light += light_of(texel);
     }
 
-    void take(const float* samples) override {
-        for (int x = 0; x < texture_.file_width; ++x)
-            cells_[static_cast<std::size_t>(x / reduced_)].add(
-                texel_of(samples + static_cast<std::size_t>(x) * channels_), decoded_);
-        --rows_left_;
-        if (++rows_ < reduced_ && rows_left_ > 0) return;
-        rows_ = 0;
-        for (Cell& cell : cells_) {
-            texture_.texels.push_back(cell.texel());
-            cell = Cell();
-        }
-    }
-
-    Texture finished() && {
-        std::size_t solid = 0;
-        for (const Texture::Texel& texel : texture_.texels) {
-            if (texel.clear) continue;
-            ++solid;
+    static Texel texel(const Cell& cell) {
+        Texel mean = cell.first;
+        mean.clear = 2 * cell.solid < cell.count;
+        if (cell.solid > 1)
             for (int c = 0; c < 3; ++c)
-                texture_.mean[c] += decoded_[texel.srgb[static_cast<std::size_t>(c)]];
-        }
-        if (solid > 0) texture_.mean /= static_cast<double>(solid);
-        texture_.coverage = static_cast<double>(solid) / static_cast<double>(texture_.texels.size());
-        return std::move(texture_);
+                mean.srgb[static_cast<std::size_t>(c)] =
+                    level8_of(srgb_encoded(static_cast<float>(cell.light[c] / cell.solid)));
+        return mean;
+    }
+
+    Rgb light_of(const Texel& texel) const {
+        return {decoded_[texel.srgb[0]], decoded_[texel.srgb[1]], decoded_[texel.srgb[2]]};
     }
 
   private:
-    using Decoded = std::array<double, 256>;
-
-    /// The texels of the file that become one.
-    struct Cell {
-        Texture::Texel first;
-        Rgb light{0.0}; ///< of the solid ones
-        int solid = 0;
-        int count = 0;
-
-        void add(const Texture::Texel& texel, const Decoded& decoded) {
-            ++count;
-            if (texel.clear) return;
-            if (solid++ == 0) first = texel;
-            for (int c = 0; c < 3; ++c)
-                light[c] += decoded[texel.srgb[static_cast<std::size_t>(c)]];
-        }
-        Texture::Texel texel() const {
-            Texture::Texel mean = first;
-            mean.clear = 2 * solid < count;
-            if (solid > 1)
-                for (int c = 0; c < 3; ++c)
-                    mean.srgb[static_cast<std::size_t>(c)] =
-                        level8_of(srgb_encoded(static_cast<float>(light[c] / solid)));
-            return mean;
-        }
-    };
-
-    Texture::Texel texel_of(const float* samples) const {
-        Texture::Texel texel;
+    Texel texel_of(const float* samples, std::size_t channels) const {
+        Texel texel;
         for (std::size_t c = 0; c < 3; ++c) {
-            const float sample = samples[channels_ >= 3 ? c : 0];
+            const float sample = samples[channels >= 3 ? c : 0];
             texel.srgb[c] = level8_of(linear_ ? srgb_encoded(sample) : sample);
         }
-        const bool has_alpha = channels_ == 2 || channels_ == 4;
-        texel.clear = has_alpha && !(samples[channels_ - 1] >= 0.5f);
+        const bool has_alpha = channels == 2 || channels == 4;
+        texel.clear = has_alpha && !(samples[channels - 1] >= 0.5f);
         return texel;
     }
 
     bool linear_;
-    std::uint64_t most_;
-    Decoded decoded_;
-    Texture texture_;
-    int reduced_ = 1; ///< texels of the file, across and up, whose mean a texel is
-    int rows_left_ = 0;
-    int rows_ = 0; ///< of the file, in the cells
-    std::size_t channels_ = 0;
-    std::vector<Cell> cells_;
+    std::array<double, 256> decoded_;
 };
 
 } // namespace
 
 Status read_texture(const std::string& path, std::uint64_t most_texels, Texture& texture) {
-    TextureSink sink(is_exr_name(path), most_texels);
+    TexturePixels pixels(is_exr_name(path));
+    ReducingSink sink(pixels, most_texels);
     const Status status = read_rows(path, sink);
-    if (status.ok()) texture = std::move(sink).finished();
+    if (!status.ok()) return status;
+    texture = {sink.shape.width, sink.shape.height, sink.width, sink.height, std::move(sink.texels)};
+    std::size_t solid = 0;
+    for (const Texture::Texel& texel : texture.texels) {
+        if (texel.clear) continue;
+        ++solid;
+        texture.mean += pixels.light_of(texel);
+    }
+    if (solid > 0) texture.mean /= static_cast<double>(solid);
+    texture.coverage = static_cast<double>(solid) / static_cast<double>(texture.texels.size());
     return status;
 }
 

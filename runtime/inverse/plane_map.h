@@ -50,20 +50,10 @@ PlaneMap bounded_inverse(const PlaneMap& map, Vec2 centre, double least);
 Vec2 fixed_point(const PlaneMap& map);
 
 /// Random numbers of one task, one after the other.
-class Draws {
+class Draws : public RandomStream {
   public:
-    Draws(CounterRandom random, std::uint64_t number) : random_(random.sequence(number)) {}
-
-    double unit() { return CounterRandom::unit(random_(next_++)); }
-    double between(double least, double most) { return least + (most - least) * unit(); }
-    std::size_t below(std::size_t count) {
-        return static_cast<std::size_t>(unit() * static_cast<double>(count));
-    }
+    Draws(CounterRandom random, std::uint64_t number) : RandomStream(random.sequence(number)) {}
     double normal(); ///< of mean 0 and deviation 1 (Box and Muller 1958)
-
-  private:
-    CounterRandom random_;
-    std::uint64_t next_ = 0;
 };
 
 } // namespace graftal

@@ -95,8 +95,6 @@ class Refinement {
             for (int attempt = 0; attempt < 5; ++attempt) {
                 if (stepped(normal_, damping, 0.02 / static_cast<double>(maps.size()), target_, rules_, maps,
                             trial)) {
-                    for (std::size_t kept = 0; kept < fit_.from; ++kept)
-                        trial[kept] = maps[kept];
                     const double now = assign(trial, words) + inner_error(trial);
                     if (now < error) {
                         going_on = error - now > 1e-4 * error;

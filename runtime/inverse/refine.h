@@ -34,8 +34,7 @@ std::uint64_t grow(const Target& target, std::span<const Vec2> inner, std::span<
 struct LevelFit {
     int levels = 1; ///< words of so many maps are compared
     int iterations = 12;
-    double reach_px = 4;  ///< points farther away count for little (Geman and McClure 1987)
-    std::size_t from = 0; ///< the maps before this one stay
+    double reach_px = 4; ///< points farther away count for little (Geman and McClure 1987)
 };
 
 inline constexpr int most_levels = 6;

@@ -172,7 +172,7 @@ class Search {
         keep(std::move(systems));
     }
 
-    /// Samples that the system without the map `without` misses.
+    /// Samples that lie in no image of the target under the maps.
     SampleSet missed_by(Task& task, const PlaneMaps& maps) const {
         SampleSet covered((target_.samples().size() + 63) / 64, 0);
         for (const PlaneMap& map : maps) {

@@ -466,6 +466,7 @@ void LanguageServer::work(const CancelFlag& cancel) {
     if (found == texts_.end()) return;
     OpenText& text = *found->second;
     Compilation compilation;
+    std::shared_ptr<const AnalysedModel> model;
     try {
         StageOptions options;
         options.lower.may_be_orbit = true;
@@ -476,13 +477,14 @@ void LanguageServer::work(const CancelFlag& cancel) {
         const auto lowered = text.session.lowered(options, compilation);
         if (lowered && !lowered->notes.orbit) {
             compilation = Compilation();
-            if (auto model = text.session.analysed(options, compilation)) text.model = std::move(model);
+            model = text.session.analysed(options, compilation);
         }
         if (cancel.raised()) return;
     } catch (const std::exception& fault) {
         compilation.diagnostics.error(Span{0, 0, 0}, fault.what());
     }
     text.to_look_at = false;
+    text.model = std::move(model);
     if (!compilation.status.ok()) compilation.diagnostics.error(Span{0, 0, 0}, compilation.status.message());
     Handlers(*this).publish(text, compilation);
 }

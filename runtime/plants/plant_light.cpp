@@ -247,7 +247,7 @@ std::optional<PlantLight> light_on_plant(const Plant& plant, const TraceModel& m
                                          const Control& control, std::string& problem) {
     const Rgb open = sky.open();
     if (!(open.r + open.g + open.b > 0)) {
-        problem = "no sky or sun of the model shines from above";
+        problem = "no sky of the model shines from above, and no sun that casts shadows";
         return std::nullopt;
     }
     return PlantLighting(plant, model, sky, options, workers, control).run(problem);

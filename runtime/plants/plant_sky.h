@@ -26,8 +26,9 @@ struct PlantSky {
     static PlantSky uniform();
 };
 
-/// The light that a model's text names, in its view: its sky and its suns, without lamps. Where the text
-/// names no light, a uniform sky.
+/// The light that a model's text names, in its view: its sky and its suns, without lamps. Suns that are
+/// `shadowless` only fill shadows in pictures, and are left out. Where the text names no light, a uniform
+/// sky.
 PlantSky sky_of_plant(const View& view, const SceneSettings& settings);
 
 } // namespace graftal

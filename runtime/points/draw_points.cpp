@@ -123,10 +123,12 @@ class Canvas {
     /// Adds the points of a source, as a graphics card makes them.
     Status add(const PointSource& source, const PointWork& work, PointsReport& report) {
         std::string why = options_.device ? "" : why_no_card();
-        if (why.empty() && !is_sharp_in_single(source, projection_))
-            why = "single precision does not tell places so near apart";
         std::optional<FlatGame> game;
         if (why.empty()) game = source.flat(projection_.picture_from_world(), label_colour(), why);
+        if (game && !is_sharp_in_single(source, projection_)) {
+            why = "single precision does not tell places so near apart";
+            game.reset();
+        }
         if (!game) return Status::failure(why);
         Status status;
         const std::unique_ptr<Gpu> gpu = Gpu::open(options_.device.value_or(0), status);
@@ -301,6 +303,19 @@ Status place_card(const PointSource& source, const Box& box, const std::vector<M
     return place_points(source, card_view(box, size), options, &card, cancel, report);
 }
 
+void warn_of_lens(const View& view, const Span& span, Diagnostics& diagnostics) {
+    if (view.lens.radius > 0) diagnostics.warning(span, "random points have no lens: all of them are sharp");
+}
+
+/// A note where each of several sequences leaves out more points than it makes.
+void note_skipped(const OrbitModel& model, std::uint64_t points, Diagnostics& diagnostics) {
+    if (model.maps.size() == 1 || points <= points_of_stream || model.skip <= points_of_stream) return;
+    diagnostics
+        .note(model.span, fmt::format("'skip' leaves out {} points before every {} that are drawn",
+                                      model.skip, points_of_stream))
+        .with_hint("a smaller 'skip' is faster");
+}
+
 std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOptions& options,
                                        const CancelFlag& cancel, Compilation& compilation) {
     constexpr std::uint64_t most_surveyed = 1u << 20;
@@ -310,8 +325,14 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
         return std::nullopt;
     }
     const OrbitSource source(model, options.compile.lower.seed.value_or(0));
-    const auto [box, astray] = source.survey(std::min(point_count(options), most_surveyed));
+    note_skipped(model, point_count(options), compilation.diagnostics);
+    const auto [box, astray] =
+        source.survey(std::min(point_count(options), most_surveyed), [&cancel] { return cancel.raised(); });
     if (source.report(compilation.diagnostics)) return std::nullopt;
+    if (cancel.raised()) {
+        compilation.status = Status::failure("interrupted");
+        return std::nullopt;
+    }
     if (astray > 0.9)
         compilation.diagnostics.warning(
             model.span, fmt::format("{:.0f} of 100 points of this orbit run away or have no value, and begin "
@@ -320,6 +341,7 @@ std::optional<PointsReport> draw_orbit(const OrbitModel& model, const PointsOpti
     PointsReport report;
     report.maps = static_cast<std::uint32_t>(model.maps.size());
     const View view = frame_graph(model.scene, {box, {}}, options.compile.view);
+    warn_of_lens(view, model.span, compilation.diagnostics);
     compilation.status = options.card.empty() ? place_points(source, view, options, nullptr, cancel, report)
                                               : place_card(source, box, {}, options, cancel, report);
     if (source.report(compilation.diagnostics)) compilation.status = Status(); // which is why it was given up
@@ -357,9 +379,7 @@ std::optional<PointsReport> draw_points(PictureSession& session, const PointsOpt
     report.maps = game->map_count();
     const ChaosSource source(*game, compile.lower.seed.value_or(0));
     const Graph& graph = viewed->model->graph;
-    if (viewed->view.lens.radius > 0)
-        compilation.diagnostics.warning(graph.objects[graph.root].span,
-                                        "random points have no lens: all of them are sharp");
+    warn_of_lens(viewed->view, graph.objects[graph.root].span, compilation.diagnostics);
     const Box& box = viewed->model->bounds[graph.root].box;
     compilation.status = options.card.empty()
                              ? place_points(source, viewed->view, options, nullptr, cancel, report)

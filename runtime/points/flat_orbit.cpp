@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "compiler/syntax/steps/expression_steps.h"
 #include "runtime/points/orbit_source.h"
 
@@ -40,13 +42,18 @@ std::optional<FlatGame> OrbitSource::flat(const Affine& seen_from_world, const L
         why = "one map has one orbit, which is not to be divided";
         return std::nullopt;
     }
+    if (model_.skip > most_skipped) {
+        why = fmt::format("'skip' leaves out more than {} points, too many for one piece of its work",
+                          most_skipped);
+        return std::nullopt;
+    }
     FlatGame flat;
     flat.formulas = true;
     flat.add_choices(tables_);
     flat.start = choices_.front();
     ExpressionSteps steps;
     double most_open = 0;
-    bool good = model_.skip <= most_skipped;
+    bool good = true;
     const auto add = [&](const OrbitFormulas* map, Paint paint, const AliasTables::Range& next) {
         const auto first = static_cast<std::uint32_t>(steps.steps.size());
         if (map) good = good && add_formulas(*map, steps);

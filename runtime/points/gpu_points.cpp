@@ -29,7 +29,7 @@ constexpr std::size_t bytes_of_walker = 64;
 constexpr double seconds_a_piece = 0.04;
 /// Software devices end loops after some ten thousand rounds, those of climbs among them.
 constexpr std::uint64_t most_points_by_software = 1u << 8; // of a walker
-constexpr std::uint64_t most_points_a_piece = 1u << 31, points_of_first_piece = 1u << 24;
+constexpr std::uint64_t most_points_a_piece = 1u << 31;
 /// Moves of all walkers until they have settled: of them a piece cannot be divided.
 constexpr std::uint64_t most_to_settle = 1u << 30, most_to_settle_by_formulas = 1u << 28;
 /// A pixel's share of all points from which on more of them may come while a cell is unpacked than it holds.
@@ -64,6 +64,10 @@ std::uint32_t levels_of(std::uint32_t channels) {
 /// How many points a cell has room for.
 double room_of_cell(std::uint32_t channels) {
     return channels == 0 ? 0x1p32 - 1 : std::floor((0x1p32 - 1) / levels_of(channels));
+}
+
+std::uint64_t points_of_first_piece(double room) {
+    return static_cast<std::uint64_t>(std::min(room, 0x1p24));
 }
 
 } // namespace
@@ -193,8 +197,9 @@ Status GpuPoints::play(Accumulation& picture, const Work& work, Job job) {
     const double room = room_of_cell(colours_.channels);
     const std::uint64_t most_moves = std::max<std::uint64_t>(
         gpu_.info().is_processor ? most_points_by_software : most_points_a_piece / job.work[0], 1);
-    // The first points all have room in one cell. Later pieces are larger, by where these fell.
-    std::uint64_t piece = std::max<std::uint64_t>(points_of_first_piece / job.work[0], 1);
+    // The first points all have room in one cell, with one more of each walker, which the last piece may
+    // have. Later pieces are larger, by where these fell.
+    std::uint64_t piece = std::max<std::uint64_t>(points_of_first_piece(room) / job.work[0], 2) - 1;
     std::uint64_t inside = 0, made = 0; // since the last flush
     job.work[3] = JOB_BEGINS;
     for (std::uint64_t done = 0; done <= moves_of_each;) {
@@ -241,7 +246,7 @@ Status GpuPoints::play(Accumulation& picture, const Work& work, Job job) {
 bool is_sharp_in_single(const PointSource& source, const PointProjection& projection) {
     constexpr double precision = 0x1p-24, sharp_px = 1.0 / 16;
     std::vector<ChaosPoint> points(4096);
-    if (!source.stream(0)->fill(points)) return false;
+    if (!source.stream(0, {})->fill(points)) return false;
     const Affine seen_from_world = projection.picture_from_world();
     double farthest = 0, parts = 0, before = 0;
     for (const ChaosPoint& point : points) {

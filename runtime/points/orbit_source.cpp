@@ -11,12 +11,16 @@ namespace graftal {
 
 class OrbitSource::Stream : public PointStream {
   public:
-    Stream(const OrbitSource& source, std::uint64_t number)
-        : source_(source), random_(source.seed_, number), number_(number), place_(source.model_.start) {}
+    Stream(const OrbitSource& source, std::uint64_t number, const Stopped& stopped)
+        : source_(source), stopped_(stopped), random_(source.seed_, number), number_(number),
+          place_(source.model_.start) {}
 
     bool fill(std::span<ChaosPoint> points) override {
-        while (steps_ < source_.model_.skip)
+        constexpr std::uint64_t steps_between_asking = 4096;
+        while (steps_ < source_.model_.skip) {
+            if (steps_ % steps_between_asking == 0 && stopped_ && stopped_()) return false;
             if (!step()) return false;
+        }
         for (ChaosPoint& point : points) {
             if (!step()) return false;
             Rgb base = base_;
@@ -86,6 +90,7 @@ class OrbitSource::Stream : public PointStream {
     }
 
     const OrbitSource& source_;
+    Stopped stopped_;
     RandomStream random_;
     std::uint64_t number_;
     Vec3 place_;
@@ -109,17 +114,17 @@ OrbitSource::OrbitSource(const OrbitModel& model, std::uint64_t seed) : model_(m
     }
 }
 
-std::unique_ptr<PointStream> OrbitSource::stream(std::uint64_t number) const {
-    return std::make_unique<Stream>(*this, number);
+std::unique_ptr<PointStream> OrbitSource::stream(std::uint64_t number, const Stopped& stopped) const {
+    return std::make_unique<Stream>(*this, number, stopped);
 }
 
-OrbitSource::Survey OrbitSource::survey(std::uint64_t points) const {
+OrbitSource::Survey OrbitSource::survey(std::uint64_t points, const Stopped& stopped) const {
     Survey survey;
-    Stream first(*this, 0);
+    Stream first(*this, 0, stopped);
     std::vector<ChaosPoint> batch(512);
     for (std::uint64_t left = points; left > 0;) {
         const std::span<ChaosPoint> room(batch.data(), std::min<std::uint64_t>(batch.size(), left));
-        if (!first.fill(room)) return survey;
+        if ((stopped && stopped()) || !first.fill(room)) return survey;
         for (const ChaosPoint& point : room)
             survey.box.include(point.place);
         left -= room.size();

@@ -15,7 +15,7 @@ namespace graftal {
 class OrbitSource : public PointSource {
   public:
     OrbitSource(const OrbitModel& model, std::uint64_t seed);
-    std::unique_ptr<PointStream> stream(std::uint64_t number) const override;
+    std::unique_ptr<PointStream> stream(std::uint64_t number, const Stopped& stopped) const override;
     bool single() const override { return model_.maps.size() == 1; }
     std::optional<FlatGame> flat(const Affine& seen_from_world, const LabelColour& colour_of,
                                  std::string& why) const override;
@@ -24,8 +24,8 @@ class OrbitSource : public PointSource {
         Box box;
         double astray = 0; ///< the share of moves that go astray and begin again
     };
-    /// The first points of the first sequence.
-    Survey survey(std::uint64_t points) const;
+    /// The first points of the first sequence, or fewer if it was stopped.
+    Survey survey(std::uint64_t points, const Stopped& stopped) const;
     /// Reports, if a sequence has gone astray, where and why; of several that have, the first.
     bool report(Diagnostics& diagnostics) const;
 

@@ -53,7 +53,6 @@ class PointProjection {
         return turned;
     }
     bool perspective() const { return perspective_; }
-    ImageSize size() const { return size_; }
 
   private:
     Vec3 eye_, direction_, across_, down_;

@@ -44,16 +44,21 @@ class PointProgress {
         next_ = now + std::chrono::milliseconds(100);
         work_.on_progress(static_cast<double>(done) / static_cast<double>(work_.points));
     }
-    bool stopped() {
-        if (!stopped_ && work_.cancelled && work_.cancelled()) stopped_ = true;
-        return stopped_;
+    bool stopped(std::uint64_t stream) {
+        if (work_.cancelled && end_ > 0 && work_.cancelled()) end_ = 0;
+        return stream >= end_;
     }
-    void stop() { stopped_ = true; }
+    bool complete() const { return end_ == UINT64_MAX; }
+    /// Stops the stream and those after it.
+    void stop_from(std::uint64_t stream) {
+        for (std::uint64_t end = end_; stream < end && !end_.compare_exchange_weak(end, stream);) {
+        }
+    }
 
   private:
     const PointWork& work_;
     std::atomic<std::uint64_t> done_ = 0;
-    std::atomic<bool> stopped_ = false;
+    std::atomic<std::uint64_t> end_ = UINT64_MAX; ///< of the streams that go on
     std::mutex telling_;
     std::chrono::steady_clock::time_point next_;
 };
@@ -100,11 +105,12 @@ void play(const PointSource& source, const PointWork& work, std::uint64_t number
           const Take& take) {
     const std::uint64_t first = number * points_of_stream;
     std::uint64_t left = source.single() ? work.points : std::min(points_of_stream, work.points - first);
-    const std::unique_ptr<PointStream> stream = source.stream(number);
+    const auto stopped = [&progress, number] { return progress.stopped(number); };
+    const std::unique_ptr<PointStream> stream = source.stream(number, stopped);
     std::vector<ChaosPoint> batch(batch_size);
-    for (std::uint64_t told = left; left > 0 && !progress.stopped();) {
+    for (std::uint64_t told = left; left > 0 && !stopped();) {
         const std::span<ChaosPoint> points(batch.data(), std::min<std::uint64_t>(batch_size, left));
-        if (!stream->fill(points)) return progress.stop();
+        if (!stream->fill(points)) return progress.stop_from(number);
         take(points);
         left -= points.size();
         if (told - left < points_of_stream && left > 0) continue;
@@ -115,7 +121,7 @@ void play(const PointSource& source, const PointWork& work, std::uint64_t number
 
 } // namespace
 
-std::unique_ptr<PointStream> ChaosSource::stream(std::uint64_t number) const {
+std::unique_ptr<PointStream> ChaosSource::stream(std::uint64_t number, const Stopped&) const {
     return std::make_unique<ChaosStream>(game_, seed_, number);
 }
 
@@ -127,30 +133,30 @@ bool take_points(const PointSource& source, const PointWork& work,
                  const std::function<void(int worker, std::span<const ChaosPoint>)>& take) {
     PointProgress progress(work);
     WorkerThreads(work.threads).for_each(stream_count(source, work), [&](int worker, std::uint64_t number) {
-        if (progress.stopped()) return;
+        if (progress.stopped(number)) return;
         play(source, work, number, progress,
              [&](std::span<const ChaosPoint> points) { take(worker, points); });
     });
-    return !progress.stopped();
+    return progress.complete();
 }
 
 bool write_points(const PointSource& source, const PointWork& work,
                   const std::function<void(std::span<const ChaosPoint>, std::vector<char>&)>& make,
                   const std::function<bool(const std::vector<char>&)>& write) {
     PointProgress progress(work);
-    const auto put = [&](const std::vector<char>& bytes) {
-        if (!progress.stopped() && !bytes.empty() && !write(bytes)) progress.stop();
+    const auto put = [&](std::uint64_t stream, const std::vector<char>& bytes) {
+        if (!progress.stopped(stream) && !bytes.empty() && !write(bytes)) progress.stop_from(0);
     };
     if (source.single()) {
         std::vector<char> bytes;
         play(source, work, 0, progress, [&](std::span<const ChaosPoint> points) {
             make(points, bytes);
             if (bytes.size() < piece_size) return;
-            put(bytes);
+            put(0, bytes);
             bytes.clear();
         });
-        put(bytes);
-        return !progress.stopped();
+        put(0, bytes);
+        return progress.complete();
     }
     Turns turns;
     WorkerThreads(work.threads).for_each(stream_count(source, work), [&](int, std::uint64_t number) {
@@ -159,9 +165,9 @@ bool write_points(const PointSource& source, const PointWork& work,
         play(source, work, number, progress,
              [&](std::span<const ChaosPoint> points) { make(points, bytes); });
         turn.wait();
-        put(bytes);
+        put(number, bytes);
     });
-    return !progress.stopped();
+    return progress.complete();
 }
 
 } // namespace graftal

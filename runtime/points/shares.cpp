@@ -28,40 +28,45 @@ class Shown {
         : model_(model), graph_(model.graph), sizes_(sizes_of(graph_, model.components, model.bounds)),
           view_(view), projection_(view, {}, 0.5, 1e-9) {}
 
-    /// Looks at the largest parts first, so that those taken as wholes at the end are small.
-    double size(const Instance& root, std::uint64_t most_visits) {
-        Walk<Part, Smaller> walk;
-        double sum = look_at(walk, root.master, root.parent_from_child);
-        for (Part part; walk.next(part);) {
-            if (walk.visits() > most_visits)
-                sum += shown(part);
+    /// Sizes of the root's instances. Looks at the largest parts first, so that those taken as wholes at the
+    /// end are small.
+    std::vector<double> sizes() {
+        const std::vector<Instance>& roots = graph_.objects[graph_.root].instances;
+        shown_.assign(roots.size(), 0);
+        for (std::size_t i = 0; i < roots.size(); ++i)
+            look_at(i, roots[i].master, roots[i].parent_from_child);
+        for (Part part; walk_.next(part);) {
+            if (looks_ > most_looks)
+                shown_[part.root] += shown(part);
             else
                 for (const Instance& instance : graph_.objects[part.object].instances)
-                    sum += look_at(walk, instance.master, part.map * instance.parent_from_child);
+                    look_at(part.root, instance.master, part.map * instance.parent_from_child);
         }
-        return sum;
+        return std::move(shown_);
     }
 
   private:
     struct Part {
+        std::size_t root = 0; ///< the instance that it belongs to
         ObjectId object = 0;
         Affine map;
         Ball ball;
         double looks = 0; ///< how large, seen from the eye
         bool operator<(const Part& other) const { return looks < other.looks; }
     };
-    using Smaller = std::less<>;
 
-    /// The share of the part as a whole; or 0, and its own parts are still to be looked at.
-    double look_at(Walk<Part, Smaller>& walk, ObjectId object, const Affine& map) {
-        Part part{object, map, transformed(map, model_.bounds[object].ball), 0};
-        if (part.ball.empty() || !projection_.sees(part.ball)) return 0; // planes get no points
+    /// Adds the share of the part as a whole, or leaves its own parts still to be looked at.
+    void look_at(std::size_t root, ObjectId object, const Affine& map) {
+        ++looks_;
+        Part part{root, object, map, transformed(map, model_.bounds[object].ball), 0};
+        if (part.ball.empty() || !projection_.sees(part.ball)) return; // planes get no points
         part.looks = look(part.ball);
         const Object& what = graph_.objects[object];
-        if (what.primitive || what.packed || model_.components.unending[object] || part.looks <= small_enough)
-            return shown(part);
-        walk.push(part);
-        return 0;
+        if (what.primitive || what.packed || model_.components.unending[object] ||
+            part.looks <= small_enough || looks_ > most_looks)
+            shown_[root] += shown(part);
+        else
+            walk_.push(part);
     }
 
     double distance(const Ball& ball) const {
@@ -80,6 +85,9 @@ class Shown {
     const std::vector<double> sizes_;
     const View& view_;
     const Projection projection_;
+    Walk<Part, std::less<>> walk_;
+    std::uint64_t looks_ = 0;
+    std::vector<double> shown_; ///< by instances of the root, so far
 };
 
 } // namespace
@@ -92,10 +100,7 @@ std::vector<double> shown_sizes(const AnalysedModel& model, const View& view) {
     if (object.instances.size() < 2 || object.packed || stated ||
         model.components.cyclic[model.components.component_of[root]])
         return {};
-    Shown shown(model, view);
-    std::vector<double> sizes;
-    for (const Instance& instance : object.instances)
-        sizes.push_back(shown.size(instance, most_looks / object.instances.size()));
+    std::vector<double> sizes = Shown(model, view).sizes();
     const bool shows = std::ranges::any_of(sizes, [](double size) { return size > 0; });
     return shows ? sizes : std::vector<double>();
 }

@@ -21,16 +21,16 @@ class Backdrop {
   public:
     explicit Backdrop(const View& view) : view_(view) {
         half_width_ = std::tan(view.camera.angle_deg * std::numbers::pi / 360);
-        plain_ = view.camera.orthographic || view.sky.zenith == view.sky.horizon;
+        plain_ = view.camera.orthographic || (!view.shows_sky_light && view.sky.zenith == view.sky.horizon);
     }
 
     Rgb at(int x, int y) const {
         const Camera& camera = view_.camera;
-        if (plain_) return view_.sky.colour(camera.direction);
+        if (plain_) return view_.background(camera.direction);
         const double step = 2 * half_width_ / view_.size.width;
         const Vec3 across = step * ((x + 0.5 - 0.5 * view_.size.width) * camera.right -
                                     (y + 0.5 - 0.5 * view_.size.height) * camera.up);
-        return view_.sky.colour(glm::normalize(camera.direction + across));
+        return view_.background(glm::normalize(camera.direction + across));
     }
 
   private:

@@ -185,16 +185,10 @@ void PovrayMessageReader::read_statistics(std::string_view line) {
     };
     for (const auto& [label, seconds] : times)
         if (text.starts_with(label)) *seconds = seconds_in(text);
-    const std::pair<std::string_view, std::optional<std::uint64_t>*> counts[] = {
-        {"Finite Objects:", &log_.finite_objects},
-        {"Infinite Objects:", &log_.infinite_objects},
-    };
-    for (const auto& [label, count] : counts) {
-        std::string_view rest = text;
-        if (!take(rest, label)) continue;
-        rest = without_blanks(rest);
-        *count = take_number<std::uint64_t>(rest);
-    }
+    std::string_view rest = text;
+    if (!take(rest, "Finite Objects:")) return;
+    rest = without_blanks(rest);
+    log_.finite_objects = take_number<std::uint64_t>(rest);
 }
 
 } // namespace graftal

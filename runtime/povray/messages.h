@@ -45,7 +45,7 @@ struct PovrayLog {
     bool illegal_matrix = false;         ///< a degenerate matrix was replaced: the picture is wrong
     bool no_objects = false;
     std::optional<double> parse_seconds, bounding_seconds, trace_seconds;
-    std::optional<std::uint64_t> finite_objects, infinite_objects;
+    std::optional<std::uint64_t> finite_objects;
 };
 
 /// Reads standard error piece by piece, cut anywhere.

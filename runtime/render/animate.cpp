@@ -1,7 +1,6 @@
 #include "runtime/render/animate.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -17,6 +16,7 @@
 #include "runtime/render/frame_clock.h"
 #include "runtime/render/frame_store.h"
 #include "runtime/render/scene_files.h"
+#include "runtime/render/stopwatch.h"
 #include "runtime/render/video.h"
 #include "runtime/system/temporary_directory.h"
 
@@ -24,11 +24,11 @@ namespace graftal {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Stage = AnimationProgress::Stage;
 
-double seconds_since(Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
+/// Number of moments whose mean a frame of moving things is.
+int moments_of_exposure(Quality quality) {
+    return by_quality(quality, 8, 16, 32);
 }
 
 /// Adds up the times of the stages over all frames.
@@ -52,13 +52,13 @@ class Animation {
                  options.frames) {}
 
     AnimationOutcome run() {
-        const Clock::time_point begin = Clock::now();
+        const Stopwatch watch;
         outcome_.done = know_models() && prepare() && draw() && (options_.only || assemble());
         if (!outcome_.done)
             discard();
         else if (!options_.only)
             clean_up();
-        outcome_.seconds = seconds_since(begin);
+        outcome_.seconds = watch.seconds();
         return std::move(outcome_);
     }
 
@@ -174,15 +174,15 @@ class Animation {
         FrameClock clock;
         std::vector<double> seconds; // of the first few
         for (std::size_t i = 0; i < missing.size(); ++i) {
-            const Clock::time_point begin = Clock::now();
+            const Stopwatch watch;
             std::optional<double> seconds_left = clock.seconds_left(missing.size() - i);
             if (seconds_left) *seconds_left += assembling_seconds();
             if (!draw_frame(missing[i], seconds_left)) return false;
-            clock.add(seconds_since(begin));
+            clock.add(watch.seconds());
             drawn_.push_back(missing[i]);
             ++outcome_.drawn;
             if (seconds.size() == estimating_frames) continue;
-            seconds.push_back(seconds_since(begin));
+            seconds.push_back(watch.seconds());
             if (seconds.size() == estimating_frames && missing.size() > estimating_frames &&
                 options_.on_estimate)
                 options_.on_estimate(
@@ -388,10 +388,6 @@ AnimationMoment moment_of(const AnimateOptions& options, double at) {
         moment.words += (moment.words.empty() ? "" : " ") + words;
     }
     return moment;
-}
-
-int moments_of_exposure(Quality quality) {
-    return by_quality(quality, 8, 16, 32);
 }
 
 AnimationOutcome animate_model(PictureSession& session, const AnimateOptions& options) {

@@ -52,7 +52,7 @@ struct AnimateOptions {
     std::vector<Sweep> sweeps;
     Ease ease = Ease::linear;
     /// Exposure of each frame, as a share of the time between two, in [0, 1]; 0: it shows a moment. Others
-    /// are the mean light of the moments_of_exposure().
+    /// are the mean light of 8, 16 or 32 moments, by the quality.
     double shutter = 0;
     bool keep_frames = false;  ///< after they have been assembled
     std::string frames_folder; ///< "": frames_directory(output)
@@ -90,9 +90,6 @@ struct AnimationOutcome {
     DrawReport report;         ///< of all frames drawn
     double seconds = 0;
 };
-
-/// Number of moments whose mean a frame of moving things is.
-int moments_of_exposure(Quality quality);
 
 /// Draws the frames that are not there yet and puts them together. All models that are shown are analysed
 /// first, and the frames of one model share its analysis and preparation: they are framed together, and a

@@ -1,12 +1,94 @@
 #include "runtime/render/aov_channels.h"
 
+#include <bit>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include "runtime/render/matte_channels.h"
+#include "runtime/trace/mattes.h"
 
 namespace graftal {
+
+namespace {
+
+// Mattes in an EXR by the Cryptomatte specification 1.2.0 (Friedman and Jones): the layers CryptoObject and
+// CryptoMaterial, each with three channels of two ids and their shares, whose bits are those of 32-bit
+// floats.
+
+struct Layer {
+    std::string_view name;
+    MatteShares PixelMattes::*shares;
+};
+
+constexpr Layer layers[] = {{"CryptoObject", &PixelMattes::objects},
+                            {"CryptoMaterial", &PixelMattes::materials}};
+
+constexpr std::size_t ids_a_channel = 2;
+
+std::set<std::string_view> names_of(const Layer& layer, const CutGraph& cut, const View& view) {
+    std::set<std::string_view> names;
+    if (layer.shares == &PixelMattes::objects) {
+        for (const CutNode& node : cut.nodes)
+            names.insert(node.name);
+        names.insert(object_name(cut, ground_node));
+        return names;
+    }
+    for (const Material& material : cut.materials)
+        names.insert(material_name(material));
+    if (view.ground) names.insert(material_name(view.ground->material));
+    names.insert(material_name({}));
+    return names;
+}
+
+std::string hex_of(std::uint32_t id) {
+    return fmt::format("{:08x}", id);
+}
+
+/// Names of the channels of both layers, CryptoObject00.R to CryptoMaterial02.A.
+std::vector<std::string> matte_channel_names() {
+    std::vector<std::string> names;
+    for (const Layer& layer : layers)
+        for (std::size_t i = 0; i < MatteShares().size() / ids_a_channel; ++i)
+            for (const char channel : {'R', 'G', 'B', 'A'})
+                names.push_back(fmt::format("{}{:02}.{}", layer.name, i, channel));
+    return names;
+}
+
+/// Appends a pixel's samples of these channels.
+void append_mattes(const PixelMattes& mattes, std::vector<float>& samples) {
+    for (const Layer& layer : layers)
+        for (const MatteShare& share : mattes.*layer.shares)
+            samples.insert(samples.end(), {std::bit_cast<float>(share.id), share.share});
+}
+
+/// The tags that name the layers and the ids that are seen, as "cryptomatte/..." and text. The names are
+/// those of the graph and of the ground.
+std::vector<std::pair<std::string, std::string>> matte_tags(const std::vector<PixelMattes>& picture,
+                                                            const CutGraph& cut, const View& view) {
+    constexpr std::size_t key_digits = 7;
+    std::vector<std::pair<std::string, std::string>> tags;
+    for (const Layer& layer : layers) {
+        std::set<std::uint32_t> seen;
+        for (const PixelMattes& pixel : picture)
+            for (const MatteShare& share : pixel.*layer.shares)
+                if (share.id != 0) seen.insert(share.id);
+        nlohmann::ordered_json manifest = nlohmann::ordered_json::object();
+        for (const std::string_view name : names_of(layer, cut, view))
+            if (const std::uint32_t id = matte_id(name); seen.contains(id))
+                manifest[std::string(name)] = hex_of(id);
+        const std::string key = "cryptomatte/" + hex_of(matte_id(layer.name)).substr(0, key_digits) + "/";
+        tags.insert(tags.end(), {{key + "name", std::string(layer.name)},
+                                 {key + "hash", "MurmurHash3_32"},
+                                 {key + "conversion", "uint32_to_float32"},
+                                 {key + "manifest", manifest.dump()}});
+    }
+    return tags;
+}
+
+} // namespace
 
 MoreChannels aov_channels(const AovPicture& aovs, const CutGraph& cut, const View& view, bool alpha) {
     const ObjectNumbers numbers(cut);

@@ -8,9 +8,9 @@
 namespace graftal {
 
 /// The channels of an EXR for AOVs, as docs/native.md describes them: A, coverage, Z, normal.X, normal.Y,
-/// normal.Z, albedo.R, albedo.G, albedo.B, id, levels and those of mattes (matte_channels.h). The tag
-/// `graftal:ids` names the objects that are seen, one "NUMBER NAME" a line. Without `alpha` there is no A,
-/// for the picture has it. Requires mattes, and the graph and view that the picture was made of.
+/// normal.Z, albedo.R, albedo.G, albedo.B, id, levels and those of mattes. The tag `graftal:ids` names the
+/// objects that are seen, one "NUMBER NAME" a line. Without `alpha` there is no A, for the picture has it.
+/// Requires mattes, and the graph and view that the picture was made of.
 MoreChannels aov_channels(const AovPicture& aovs, const CutGraph& cut, const View& view, bool alpha = true);
 
 } // namespace graftal

@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -22,15 +21,6 @@
 namespace graftal {
 
 namespace {
-
-struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using OpenFile = std::unique_ptr<std::FILE, Close>;
-
-Status write_failure(const std::string& path, int reason) {
-    return Status::failure(fmt::format("cannot write '{}': {}", path, std::strerror(reason)));
-}
 
 /// The palettes of a scene, which appear with it or not at all.
 class PendingPalettes {
@@ -88,8 +78,8 @@ Status emit_to(std::FILE* file, const std::string& name, const CompiledModel& mo
     };
     const bool complete = emit_povray(model.cut, model.view, options, sink, palettes);
     if (cancel.raised()) return Status::failure("interrupted");
-    if (!complete) return write_failure(name, reason);
-    return std::fflush(file) == 0 ? Status() : write_failure(name, errno);
+    if (!complete) return system_failure("write", name, reason);
+    return std::fflush(file) == 0 ? Status() : system_failure("write", name);
 }
 
 std::string model_name(const CompiledModel& model) {
@@ -98,13 +88,13 @@ std::string model_name(const CompiledModel& model) {
 }
 
 Status copy_to_standard_output(std::FILE* file) {
-    if (std::fseek(file, 0, SEEK_SET) != 0) return write_failure("a temporary file", errno);
+    if (std::fseek(file, 0, SEEK_SET) != 0) return system_failure("write", "a temporary file");
     char buffer[1 << 16];
     while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) {
         const Status status = write_text("-", std::string_view(buffer, count));
         if (!status.ok()) return status;
     }
-    return std::ferror(file) ? write_failure("standard output", errno) : Status();
+    return std::ferror(file) ? system_failure("write", "standard output") : Status();
 }
 
 } // namespace
@@ -120,7 +110,7 @@ Status write_scene(const CompiledModel& model, const std::string& path, const Sc
     PendingFile pending(path);
     if (!pending.status().ok()) return pending.status();
     const OpenFile file(std::fopen(pending.temporary_path().c_str(), "wb"));
-    if (!file) return write_failure(path, errno);
+    if (!file) return system_failure("write", path);
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     std::vector<PaletteImage> palettes;
     PendingPalettes pending_palettes(textures, cancel);
@@ -146,7 +136,7 @@ Status print_scene(const CompiledModel& model, bool include, Diagnostics& diagno
                    const CancelFlag& cancel) {
     // A file holds the text first, since only its end tells whether palettes are needed.
     const OpenFile file(open_temporary_file());
-    if (!file) return write_failure("a temporary file", errno);
+    if (!file) return system_failure("write", "a temporary file");
     std::vector<PaletteImage> palettes;
     const Status status =
         emit_to(file.get(), "a temporary file", model, {.scene_name = model_name(model), .include = include},
@@ -170,9 +160,9 @@ Status check_writable(const std::string& path) {
     if (Status status = output_target(path, target); !status.ok()) return status;
     const std::filesystem::path folder = std::filesystem::path(target).parent_path();
     std::error_code error;
-    if (std::filesystem::is_directory(target, error)) return write_failure(path, EISDIR);
+    if (std::filesystem::is_directory(target, error)) return system_failure("write", path, EISDIR);
     const std::string place = folder.empty() ? "." : folder.string();
-    if (::access(place.c_str(), W_OK | X_OK) != 0) return write_failure(path, errno);
+    if (::access(place.c_str(), W_OK | X_OK) != 0) return system_failure("write", path);
     return {};
 }
 

@@ -1,22 +1,12 @@
 #include <fmt/format.h>
 
+#include "compiler/support/shell_words.h"
 #include "runtime/studio/asks.h"
 #include "runtime/studio/message_reader.h"
 
 namespace graftal {
 
 namespace {
-
-/// A word as a POSIX shell reads it.
-std::string quoted(const std::string& word) {
-    constexpr std::string_view plain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,^@%";
-    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-    std::string text = "'";
-    for (const char c : word)
-        text += c == '\'' ? "'\\''" : std::string(1, c);
-    return text + "'";
-}
 
 void add_vector(std::string& text, const char* name, const std::optional<Vec3>& vector) {
     if (vector) text += fmt::format(" {}={},{},{}", name, vector->x, vector->y, vector->z);
@@ -87,7 +77,7 @@ std::vector<std::string> command_words(const StudioState& state, const std::stri
     if (command == "export") return words;
     if (view.quality != Quality::normal)
         add("--quality", by_quality<const char*>(view.quality, "draft", "normal", "best"));
-    add("--engine", state.engine);
+    if (!state.engine.empty()) add("--engine", state.engine);
     return words;
 }
 
@@ -118,10 +108,7 @@ std::vector<std::string> film_words(StudioState state, const nlohmann::json& fil
 }
 
 std::string command_line(const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words)
-        text += (text.empty() ? "" : " ") + quoted(word);
-    return text;
+    return shell_quoted(words);
 }
 
 } // namespace graftal

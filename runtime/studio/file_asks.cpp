@@ -75,6 +75,10 @@ FileJob file_job(const StudioState& state, const nlohmann::json& ask) {
         1, fields.whole("height", most_side).value_or(static_cast<std::uint64_t>(size.height))));
     const bool is_picture = job.suffix == ".png" || job.suffix == ".exr";
     if (film) {
+        if (job.suffix == ".usda") { // the model itself: nobody draws it
+            shown.engine.clear();
+            shown.stages.view.quality = Quality::normal;
+        }
         job.words = film_words(std::move(shown), *film);
         return job;
     }

@@ -54,19 +54,38 @@ void move_to(double share, const nlohmann::json& film, LowerOptions& lower) {
             static_cast<unsigned>(least + std::min(most - least, std::floor(share * (most - least + 1))));
 }
 
+std::uint64_t frames_of(const nlohmann::json& film) {
+    return MessageReader(film).needed_whole("frames", UINT32_MAX);
+}
+
 } // namespace
 
-std::shared_ptr<const SharedFraming> FilmFraming::of(const nlohmann::json& film, const std::string& text,
-                                                     StageOptions stages, Session& session) {
-    const std::uint64_t frames =
-        std::clamp<std::uint64_t>(MessageReader(film).needed_whole("frames", UINT32_MAX), 2, most_looked_at);
+void check_film(const nlohmann::json& film) {
+    frames_of(film);
+    LowerOptions unheard;
+    constexpr double after_all = 2; // so that each key is read
+    move_to(after_all, film, unheard);
+}
+
+std::shared_ptr<const SharedFraming> FilmFraming::of(const StudioState& state, Session& session) {
+    const nlohmann::json& film = *state.film;
+    const std::uint64_t frames = std::clamp<std::uint64_t>(frames_of(film), 2, most_looked_at);
+    StageOptions stages = state.stages;
     stages.view.framing.reset();
     move_to(0, film, stages.lower);
-    std::string key =
-        fmt::format("{} {}x{} {} {}\n{}", film.dump(), stages.view.size.width, stages.view.size.height,
-                    stages.lower.seed.value_or(0), stages.lower.seed.has_value(), text);
-    for (const auto& [name, value] : stages.lower.set)
-        key += fmt::format("\n{}={}", name, value);
+    const LowerOptions& lower = stages.lower;
+    const nlohmann::json made_from = nlohmann::json::array({
+        state.name,
+        *state.text,
+        film,
+        state.camera ? *state.camera : nlohmann::json(),
+        {stages.view.size.width, stages.view.size.height},
+        lower.set,
+        lower.seed ? nlohmann::json(*lower.seed) : nlohmann::json(),
+        lower.steps ? nlohmann::json(*lower.steps) : nlohmann::json(),
+        lower.time ? nlohmann::json(*lower.time) : nlohmann::json(),
+    });
+    std::string key = made_from.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     if (key == known_) return framing_;
     auto framing = std::make_shared<SharedFraming>();
     bool is_empty = true;

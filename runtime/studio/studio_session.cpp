@@ -25,6 +25,7 @@ constexpr std::size_t most_message_bytes = 16u << 20u;
 constexpr double least_factor = 1e-3;
 /// Asks, and faults, that wait for their answers.
 constexpr std::size_t most_waiting = 256;
+constexpr std::size_t most_waiting_bytes = 2 * most_message_bytes; // of all asks
 
 /// Copies of a deep value would use up the stack.
 nlohmann::json parsed(std::string_view message) {
@@ -52,7 +53,7 @@ void StudioSession::hear(std::string_view message) {
     try {
         if (message.size() > most_message_bytes)
             throw BadMessage(fmt::format("a message has at most {} bytes", most_message_bytes));
-        note(parsed(message));
+        note(parsed(message), message.size());
         return;
     } catch (const nlohmann::json::exception& fault) {
         problem = fmt::format("this is no message: {}", fault.what());
@@ -64,7 +65,7 @@ void StudioSession::hear(std::string_view message) {
     waiting_ = true;
 }
 
-void StudioSession::note(const nlohmann::json& message) {
+void StudioSession::note(const nlohmann::json& message, std::size_t bytes) {
     const MessageReader fields(message);
     const std::string type = fields.needed_text("type");
     if (type == "state") {
@@ -79,9 +80,12 @@ void StudioSession::note(const nlohmann::json& message) {
         stale_ = true;
     } else if (type == "ask") {
         Ask ask{static_cast<std::uint32_t>(fields.needed_whole("id", UINT32_MAX)), fields.needed_text("what"),
-                message};
+                message, bytes};
+        if (ask.id < first_ask_id) throw BadMessage(fmt::format("'id' is at least {}", first_ask_id));
         const std::lock_guard lock(inbox_);
-        if (asks_.size() >= most_waiting) throw BadMessage("too many asks wait for an answer");
+        if (asks_.size() >= most_waiting || asked_bytes_ + bytes > most_waiting_bytes)
+            throw BadMessage("too many asks wait for an answer");
+        asked_bytes_ += bytes;
         asks_.push_back(std::move(ask));
         waiting_ = true;
     } else {
@@ -124,7 +128,6 @@ bool StudioSession::work(double budget_seconds) {
         } catch (const std::bad_alloc&) {
             fail("graftal has too little memory for this model: make it, or its picture, smaller");
         } catch (const std::exception& fault) { // a broken invariant
-            thumbnails_.clear();
             fail(fault.what());
         }
     } while (!stopped_ && clock_seconds() < end);
@@ -177,7 +180,7 @@ bool StudioSession::prepare(ModelSession& model, StudioState& state, PreparedVie
     StageOptions& stages = state.stages;
     stages.lower.root = home_.root();
     stages.detail.memory_bytes = home_.memory_bytes();
-    if (state.film) stages.view.framing = film_framing_.of(*state.film, *state.text, stages, *model.session);
+    if (state.film) stages.view.framing = film_framing_.of(state, *model.session);
     if (outdated()) return false;
     prepared.viewed = model.session->viewed(stages, compilation);
     if (outdated() || !prepared.viewed) return false;
@@ -204,11 +207,10 @@ void StudioSession::compile() {
     described_ = false;
     stage_ = is_drawn ? Stage::picture : Stage::nothing;
     if (!is_drawn) return;
-    std::shared_ptr<TraceGround> ground = ground_of_ == prepared.prepared ? ground_ : nullptr;
-    ground_of_ = prepared.prepared;
+    if (std::exchange(ground_of_, prepared.prepared) != prepared.prepared) ground_ = nullptr;
     picture_ = std::make_unique<ProgressivePicture>(
         std::move(prepared), PictureWishes{},
-        [this]() -> const Workers& { return home_.workers(state_.threads); }, std::move(ground),
+        [this]() -> const Workers& { return home_.workers(state_.threads); }, ground_,
         is_same_text ? seconds_a_sample_ : 0);
 }
 
@@ -218,11 +220,18 @@ bool StudioSession::draws_first() const {
     return stage_ == Stage::picture && !picture_->done() && picture_->passes() < enough;
 }
 
+/// A piece that was cut begins anew: the next one may take twice as long.
+void StudioSession::wait_longer(bool was_cut) {
+    patience_ = was_cut ? 2 * patience_ : 1;
+}
+
 void StudioSession::draw_thumbnail(const std::function<bool()>& cut_short) {
     try {
         step_thumbnail(cut_short);
     } catch (const std::bad_alloc&) {
         end_thumbnail("graftal has too little memory for this picture");
+    } catch (const std::exception& fault) { // a broken invariant
+        end_thumbnail(fault.what());
     }
 }
 
@@ -248,6 +257,7 @@ void StudioSession::step_thumbnail(const std::function<bool()>& cut_short) {
     };
     thumbnail.picture->step([&] { return outdated() || cut_short(); }, [this] { return outdated(); },
                             listener);
+    wait_longer(!outdated() && cut_short());
     if (thumbnail.picture->done()) end_thumbnail({});
 }
 
@@ -341,8 +351,7 @@ void StudioSession::draw(const std::function<bool()>& cut_short) {
     if (!picture_->step(
             cancelled, [this] { return outdated(); }, listener))
         stage_ = Stage::nothing;
-    const bool was_cut = !outdated() && !waiting_ && cut_short();
-    patience_ = was_cut ? 2 * patience_ : 1;
+    wait_longer(!outdated() && !waiting_ && cut_short());
     ground_ = picture_->ground();
     seconds_a_sample_ = picture_->rough_seconds_a_sample();
     if (picture_->passes() > 0 && passes == 0 && !outdated()) describe();
@@ -357,6 +366,7 @@ bool StudioSession::answer_next() {
         if (asks_.empty()) return false;
         ask = std::move(asks_.front());
         asks_.pop_front();
+        asked_bytes_ -= ask.bytes;
         waiting_ = !asks_.empty();
     }
     nlohmann::json message{{"type", "answer"}, {"id", ask.id}};
@@ -409,10 +419,18 @@ void StudioSession::start_file(const Ask& ask) {
         if (writing_) change(*writing_);
         if (wake_) wake_();
     };
-    home_.make_file(
-        std::move(job), CancelFlag([this] { return stopped_ || file_stopped_; }),
-        [note](double share) { note([&](Writing& writing) { writing.share = share; }); },
-        [note](FileResult result) { note([&](Writing& writing) { writing.result = std::move(result); }); });
+    try {
+        home_.make_file(
+            std::move(job), CancelFlag([this] { return stopped_ || file_stopped_; }),
+            [note](double share) { note([&](Writing& writing) { writing.share = share; }); },
+            [note](FileResult result) {
+                note([&](Writing& writing) { writing.result = std::move(result); });
+            });
+    } catch (...) { // no memory, or no thread: it was not begun
+        const std::lock_guard lock(inbox_);
+        writing_.reset();
+        throw;
+    }
 }
 
 void StudioSession::tell_of_file() {

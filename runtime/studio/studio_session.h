@@ -67,6 +67,7 @@ class StudioSession {
         std::uint32_t id = 0;
         std::string what;
         nlohmann::json message;
+        std::size_t bytes = 0; ///< of the message
     };
 
     /// A file that is made, or was.
@@ -92,7 +93,7 @@ class StudioSession {
     };
 
     // For hear().
-    void note(const nlohmann::json& message);
+    void note(const nlohmann::json& message, std::size_t bytes);
 
     // For work().
     void take_state();
@@ -104,6 +105,7 @@ class StudioSession {
     void tell_of_engine();
     void send_tile(const ShownTile& tile);
     bool draws_first() const;
+    void wait_longer(bool was_cut);
     void draw_thumbnail(const std::function<bool()>& cut_short);
     void step_thumbnail(const std::function<bool()>& cut_short);
     void end_thumbnail(const std::string& error);
@@ -125,6 +127,7 @@ class StudioSession {
     std::mutex inbox_;
     std::optional<StudioState> heard_;
     std::deque<Ask> asks_;
+    std::size_t asked_bytes_ = 0; ///< of all of these
     std::deque<std::string> faults_;
     std::optional<Writing> writing_;
     std::deque<Arrived> arrived_;

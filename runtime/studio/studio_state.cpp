@@ -9,6 +9,7 @@
 #include "compiler/zoom/address.h"
 #include "compiler/zoom/magnification.h"
 #include "runtime/studio/binary_message.h"
+#include "runtime/studio/film_framing.h"
 #include "runtime/studio/message_reader.h"
 
 namespace graftal {
@@ -43,18 +44,15 @@ CameraOverride read_camera(const nlohmann::json& object) {
     CameraOverride asked{.location = place(camera, "location"),
                          .look_at = place(camera, "look_at"),
                          .up = camera.vector("up"),
-                         .direction = camera.vector("direction"),
                          .angle_deg = camera.number("angle_deg"),
                          .orthographic = camera.flag("orthographic").value_or(false),
                          .width = size(camera, "width", false),
-                         .height = size(camera, "height", false),
                          .aperture = size(camera, "aperture", true),
                          .focus = place(camera, "focus")};
     // A page says the width of a picture by parallel rays, and the angle of others.
     if (asked.width && !asked.angle_deg) asked.orthographic = true;
-    for (const std::optional<Vec3>& direction : {asked.up, asked.direction})
-        if (direction && *direction != Vec3(0.0) && !is_direction(*direction))
-            throw BadMessage(fmt::format("a direction of the camera: {}", range_hint));
+    if (asked.up && *asked.up != Vec3(0.0) && !is_direction(*asked.up))
+        throw BadMessage(fmt::format("'up': {}", range_hint));
     if (asked.angle_deg && !(*asked.angle_deg >= least_size && *asked.angle_deg < 180))
         throw BadMessage("'angle_deg' does not lie between 0 and 180");
     return asked;
@@ -125,7 +123,10 @@ StudioState read_state(const nlohmann::json& object, bool has_number) {
         state.camera = *camera;
         view.camera = read_camera(*camera);
     }
-    if (const nlohmann::json* const film = message.object("film")) state.film = *film;
+    if (const nlohmann::json* const film = message.object("film")) {
+        check_film(*film);
+        state.film = *film;
+    }
     state.at = message.text("at").value_or("");
     state.zoom = message.text("zoom").value_or("");
     view.zoom = read_zoom(state.at, state.zoom);

@@ -16,7 +16,7 @@ struct StudioState {
     std::string name;                ///< of the model's file
     std::optional<std::string> text; ///< nothing: the one before
     StageOptions stages;
-    std::string engine = "native";
+    std::string engine = "native"; ///< "": of files that nobody draws
     int threads = 0;
     std::string at, zoom;                 ///< as they were written; "" for none
     std::optional<nlohmann::json> camera; ///< likewise

@@ -1,6 +1,7 @@
 #include "runtime/system/confinement.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -59,34 +60,35 @@ bool limit(int what, std::uint64_t most) {
     return ::setrlimit(static_cast<__rlimit_resource>(what), &now) == 0;
 }
 
+/// The folders of programs and libraries, and the devices without contents. None holds anything of a user's.
+constexpr std::string_view system_files[] = {
+    "/bin",
+    "/lib",
+    "/lib32",
+    "/lib64",
+    "/usr/bin",
+    "/usr/lib",
+    "/usr/lib32",
+    "/usr/lib64",
+    "/usr/libexec",
+    "/usr/local/bin",
+    "/usr/local/lib",
+    "/etc/ld.so.cache",
+    "/dev/null",
+    "/dev/zero",
+    "/dev/random",
+    "/dev/urandom",
+    "/usr/share/zoneinfo",
+    "/etc/localtime",
+    "/sys/devices/system/cpu",
+};
+
 std::string folder_of(const std::string& path) {
     const std::size_t slash = path.rfind('/');
     return slash == std::string::npos ? "." : path.substr(0, slash + 1);
 }
 
 } // namespace
-
-std::vector<std::string> system_files() {
-    return {"/bin",
-            "/lib",
-            "/lib32",
-            "/lib64",
-            "/usr/bin",
-            "/usr/lib",
-            "/usr/lib32",
-            "/usr/lib64",
-            "/usr/libexec",
-            "/usr/local/bin",
-            "/usr/local/lib",
-            "/etc/ld.so.cache",
-            "/dev/null",
-            "/dev/zero",
-            "/dev/random",
-            "/dev/urandom",
-            "/usr/share/zoneinfo",
-            "/etc/localtime",
-            "/sys/devices/system/cpu"};
-}
 
 bool can_confine_files() {
     return landlock_version() > 0;
@@ -102,8 +104,8 @@ PreparedConfinement::PreparedConfinement(const Confinement& confinement, const s
     rules_ = static_cast<int>(::syscall(create_ruleset, &set, size, 0));
     if (rules_ < 0) return;
     ::fcntl(rules_, F_SETFD, FD_CLOEXEC);
-    for (const std::string& path : system_files())
-        allow(path, path.starts_with("/dev/") ? reading | write_file : reading);
+    for (const std::string_view path : system_files)
+        allow(std::string(path), path.starts_with("/dev/") ? reading | write_file : reading);
     // A program brings files of its own along, and scripts those that they run.
     allow(folder_of(program), reading);
     for (const std::string& path : confinement.readable)

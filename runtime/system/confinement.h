@@ -13,13 +13,10 @@ struct Confinement {
     std::uint64_t file_bytes = 0;   ///< of the largest file that it writes; 0: no limit
     std::uint64_t cpu_seconds = 0;  ///< of all its threads; 0: no limit
     /// Files, and folders with all in them; what is not there is passed over. The program and what programs
-    /// need to start (system_files) are readable anyhow.
+    /// need to start are readable anyhow.
     std::vector<std::string> readable;
     std::vector<std::string> writable; ///< and readable
 };
-
-/// The folders of programs and libraries, and the devices without contents. None holds anything of a user's.
-std::vector<std::string> system_files();
 
 /// Whether the kernel can keep a child to its files.
 bool can_confine_files();

@@ -1,7 +1,6 @@
 #include "runtime/system/disk_files.h"
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <system_error>
 
@@ -17,8 +16,7 @@ class DiskFiles final : public Files {
   public:
     Status check(const std::string& path) const override {
         std::error_code code;
-        if (!std::filesystem::exists(path, code))
-            return Status::failure(fmt::format("cannot open '{}': {}", path, std::strerror(ENOENT)));
+        if (!std::filesystem::exists(path, code)) return system_failure("open", path, ENOENT);
         if (is_special_file(path))
             return Status::failure(fmt::format("'{}' is {}", path, special_file_text(path)));
         return {};

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 #include <system_error>
 
 #include <fcntl.h>
@@ -20,15 +17,6 @@
 namespace graftal {
 
 namespace {
-
-struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using OpenFile = std::unique_ptr<std::FILE, Close>;
-
-Status system_failure(std::string_view verb, const std::string& path) {
-    return Status::failure(fmt::format("cannot {} '{}': {}", verb, path, std::strerror(errno)));
-}
 
 Status read_stream(std::FILE* stream, const std::string& path, std::string& text, std::size_t max_bytes) {
     text.clear();
@@ -78,6 +66,10 @@ void remove_abandoned(const std::filesystem::path& target, const std::string& ex
 
 } // namespace
 
+Status system_failure(std::string_view verb, std::string_view path, int reason) {
+    return Status::failure(fmt::format("cannot {} '{}': {}", verb, path, std::strerror(reason)));
+}
+
 bool is_special_file(const std::string& path) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -116,8 +108,7 @@ Status output_target(const std::string& path, std::string& target) {
     std::filesystem::path at = path;
     std::error_code error;
     for (int i = 0; std::filesystem::is_symlink(at, error); ++i) {
-        if (i == most_links)
-            return Status::failure(fmt::format("cannot write '{}': {}", path, std::strerror(ELOOP)));
+        if (i == most_links) return system_failure("write", path, ELOOP);
         at = at.parent_path() / std::filesystem::read_symlink(at, error);
     }
     target = at.string();
@@ -141,21 +132,26 @@ PendingFile::PendingFile(std::string path) : path_(std::move(path)), status_(out
     create();
 }
 
-/// Makes the temporary. If it cannot be made, writers to it report that.
-void PendingFile::create() {
+/// A name beside the target for another file of this process.
+std::string PendingFile::temporary_name() const {
     static std::atomic<unsigned> count = 0; // two writers of one file do not share a temporary
     const std::filesystem::path target(target_);
+    const std::string name = fmt::format(".{}.{}.{}{}", target.stem().string(), ::getpid(), ++count,
+                                         std::filesystem::path(path_).extension().string());
+    return (target.parent_path() / name).string();
+}
+
+/// Makes the temporary. If it cannot be made, writers to it report that.
+void PendingFile::create() {
     for (int tries = 0; tries < 3; ++tries) {
-        const std::string name = fmt::format(".{}.{}.{}{}", target.stem().string(), ::getpid(), ++count,
-                                             std::filesystem::path(path_).extension().string());
-        temporary_ = (target.parent_path() / name).string();
+        temporary_ = temporary_name();
         lock_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         // Another may have taken it for abandoned before it was locked.
         if (lock_ < 0) break;
         ::futimens(lock_, never_written);
         struct stat info = {};
         if (::flock(lock_, LOCK_EX) != 0 || ::fstat(lock_, &info) != 0 || info.st_nlink > 0) break;
-        ::close(lock_);
+        ::close(std::exchange(lock_, -1));
     }
     pending_paths.note(temporary_.c_str());
 }
@@ -174,6 +170,10 @@ PendingFile::~PendingFile() {
         pending_paths.forget(temporary_.c_str());
         if (!committed_ || exchanged_) ::unlink(temporary_.c_str());
     }
+    if (!before_.empty()) {
+        pending_paths.forget(before_.c_str());
+        ::unlink(before_.c_str());
+    }
     if (lock_ >= 0) ::close(lock_);
 }
 
@@ -184,18 +184,26 @@ Status PendingFile::commit() {
     return {};
 }
 
-/// Commits, but keeps the old file under the temporary's name, where the file system knows how.
+/// Commits, but keeps the old file: under the temporary's name, or where the file system cannot exchange two
+/// names, under another.
 Status PendingFile::take_place() {
     if (Status status = check_written(); !status.ok()) return status;
     exchanged_ = !is_special_file(target_) &&
                  ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0;
-    if (!exchanged_) return commit();
+    if (!exchanged_) {
+        before_ = temporary_name();
+        was_there_ = ::link(target_.c_str(), before_.c_str()) == 0 || errno != ENOENT;
+        pending_paths.note(before_.c_str());
+        return commit();
+    }
     committed_ = true;
     return {};
 }
 
 void PendingFile::give_back() {
-    if (!exchanged_)
+    if (!exchanged_ && was_there_)
+        ::rename(before_.c_str(), target_.c_str());
+    else if (!exchanged_)
         ::unlink(target_.c_str());
     else
         ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE);

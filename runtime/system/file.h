@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cerrno>
+#include <cstdio>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,6 +11,15 @@
 #include "compiler/support/status.h"
 
 namespace graftal {
+
+/// The failure "cannot VERB 'PATH'", for a reason of the system.
+Status system_failure(std::string_view verb, std::string_view path, int reason = errno);
+
+struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+/// A file that closes itself.
+using OpenFile = std::unique_ptr<std::FILE, CloseFile>;
 
 /// True for what is there and is no regular file. To be asked before a file is opened: opening a pipe that
 /// nobody writes would wait for ever.
@@ -47,6 +59,7 @@ class PendingFile {
     friend Status commit_together(std::span<PendingFile* const> files);
 
   private:
+    std::string temporary_name() const;
     void create();
     Status check_written() const;
     Status take_place();
@@ -59,6 +72,8 @@ class PendingFile {
     int lock_ = -1;
     bool committed_ = false;
     bool exchanged_ = false; ///< the temporary is what was there before
+    bool was_there_ = false; ///< if not exchanged: there was something before
+    std::string before_;     ///< and its second name, or ""
 };
 
 /// Commits all of them in this order, or none: where one cannot be, those before it become again what they

@@ -1,12 +1,12 @@
 #include "runtime/system/made_folders.h"
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "runtime/system/file.h"
 
 namespace graftal {
 
@@ -19,12 +19,14 @@ Status MadeFolders::make(const std::string& path) {
         const bool made = ::mkdir(at.c_str(), 0777) == 0;
         reason = made ? 0 : errno;
         if (made) made_.push_back(at.string());
+        std::error_code unknown;
+        if (!made && !std::filesystem::is_directory(at, unknown)) break;
     }
     std::error_code error;
     if (std::filesystem::is_directory(path, error)) return {};
     if (reason == EEXIST) reason = ENOTDIR;
     take_back();
-    return Status::failure(fmt::format("cannot make the folder '{}': {}", path, std::strerror(reason)));
+    return system_failure("make the folder", path, reason);
 }
 
 void MadeFolders::take_back() {

@@ -16,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "runtime/system/file.h"
 #include "runtime/system/memory_limit.h"
 #include "runtime/system/process_memory.h"
 
@@ -29,10 +30,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-Status system_failure(std::string_view what) {
-    return Status::failure(fmt::format("cannot {}: {}", what, std::strerror(errno)));
 }
 
 bool is_executable_file(const std::string& path) {
@@ -207,17 +204,12 @@ class Watch {
     Clock::time_point cancelled_at_;
 };
 
-void record_end(int wait_status, const rusage& usage, ProcessResult& result) {
+void record_end(int wait_status, ProcessResult& result) {
     if (WIFEXITED(wait_status)) result.exit_code = WEXITSTATUS(wait_status);
     if (WIFSIGNALED(wait_status)) {
         result.exit_code = -1;
         result.signal = WTERMSIG(wait_status);
     }
-    const auto seconds = [](const timeval& t) {
-        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-    };
-    result.user_seconds = seconds(usage.ru_utime);
-    result.system_seconds = seconds(usage.ru_stime);
 }
 
 } // namespace
@@ -255,7 +247,7 @@ ProcessResult run_process(const ProcessOptions& options) {
     const Descriptor null_device(::open("/dev/null", O_RDWR | O_CLOEXEC));
     Descriptor text_in, text_out, report_in, report_out;
     if (null_device.get() < 0 || !open_pipe(text_in, text_out) || !open_pipe(report_in, report_out))
-        return fail(system_failure("open a pipe"));
+        return fail(Status::failure(fmt::format("cannot open a pipe: {}", std::strerror(errno))));
     const ExecTables tables(options);
     std::optional<PreparedConfinement> confinement;
     if (options.confinement) confinement.emplace(*options.confinement, *program);
@@ -263,7 +255,7 @@ ProcessResult run_process(const ProcessOptions& options) {
     const Clock::time_point start = Clock::now();
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
-    if (child < 0) return fail(system_failure("start '" + name + "'"));
+    if (child < 0) return fail(system_failure("start", name));
     if (child == 0)
         become_program(program->c_str(), options, tables, confinement ? &*confinement : nullptr,
                        null_device.get(), text_out.get(), report_out.get(), parent);
@@ -276,14 +268,11 @@ ProcessResult run_process(const ProcessOptions& options) {
     Watch watch(child, start_error == 0 ? text_in.get() : -1, options);
     int wait_status = 0;
     rusage usage = {};
-    if (!watch.run(wait_status, usage)) return fail(system_failure("wait for '" + name + "'"));
-    if (start_error != 0) {
-        errno = start_error;
-        return fail(system_failure("start '" + name + "'"));
-    }
+    if (!watch.run(wait_status, usage)) return fail(system_failure("wait for", name));
+    if (start_error != 0) return fail(system_failure("start", name, start_error));
     result.cancelled = watch.cancelled();
     result.wall_seconds = seconds_since(start);
-    record_end(wait_status, usage, result);
+    record_end(wait_status, result);
     // The kernel's figure starts from what the child was before exec: a copy of us.
     const std::uint64_t peak_since_fork = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
     constexpr std::uint64_t slack = 4 << 20;

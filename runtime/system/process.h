@@ -36,8 +36,6 @@ struct ProcessResult {
     int signal = 0;         ///< the signal that ended it, or 0
     bool cancelled = false; ///< and ended by us for that
     double wall_seconds = 0;
-    double user_seconds = 0;
-    double system_seconds = 0;
     std::uint64_t peak_bytes = 0; ///< resident memory at its highest
 
     bool succeeded() const { return status.ok() && exit_code == 0 && signal == 0 && !cancelled; }

@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -142,17 +141,13 @@ Status TemporaryDirectory::create() {
     remove_abandoned();
     const Nursery nursery(LOCK_SH);
     std::string path = name_to_fill();
-    if (!::mkdtemp(path.data()))
-        return Status::failure(
-            fmt::format("cannot make a temporary directory '{}': {}", path, std::strerror(errno)));
+    if (!::mkdtemp(path.data())) return system_failure("make a temporary directory", path);
     outer_ = std::move(path);
     lock_ = lock_path(outer_);
     path_ = fmt::format("{}/{}", outer_, inner);
     if (::mkdir(path_.c_str(), 0700) == 0)
         folder_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder_ < 0)
-        return Status::failure(
-            fmt::format("cannot make a temporary directory '{}': {}", path_, std::strerror(errno)));
+    if (folder_ < 0) return system_failure("make a temporary directory", path_);
     directories.note(this);
     return {};
 }

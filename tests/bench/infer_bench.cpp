@@ -327,7 +327,7 @@ void study(Outcome outcome, Strokes drawn, double seconds, Dice& dice) {
     std::string text;
     try {
         WorkMeter meter(control, "search", 4096, seconds_of_unfolded_module);
-        for (const StrokeGraph& graph : stroke_graphs(drawn, 0.01, text)) {
+        for (const StrokeGraph& graph : stroke_graphs(drawn, 0.01, meter, text)) {
             angle_deg = graph.angle_deg;
             found = find_grammar(graph, meter, {});
             if (found) break;

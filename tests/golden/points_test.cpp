@@ -189,6 +189,8 @@ TEST_F(CommandLine, FitDrawings) {
     EXPECT_EQ(json["lines"], 130);
     EXPECT_EQ(json["redrawn"], 130);
     EXPECT_EQ(json["steps"], 4);
+    write("\xff.lsys", "lsys a {\n angle 60\n steps 3\n axiom F\n F -> F+F--F+F\n}\n");
+    EXPECT_EQ(nlohmann::json::parse(graftal("fit \xff.lsys -o koch.lsys --json -q").out)["lines"], 64);
     const RunResult cut = graftal("fit pen.svg --work 1");
     EXPECT_EQ(cut.status, 1) << "a pen draws each line once, in any direction";
     EXPECT_THAT(cut.err, HasSubstr("error: "));

@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -105,6 +106,22 @@ TEST_F(Stats, BoundsHoldTerminals) {
     }
 }
 
+/// Found by a reader of the papers: a tree whose limbs shrink was scaled as one that grows.
+TEST_F(Stats, LimitsThatConvergeKeepTheirSize) {
+    for (const double ratio : {0.62, 0.9, 0.95}) {
+        write("limit.lsys",
+              fmt::format("lsys t {{\n  steps infinite\n  width 0.1\n  axiom A(1,0.1)\n  A(l,w) -> "
+                          "!(w)F(l)[+(30)A(l*0.4,w*0.4)]A(l*{},w*{})\n}}\n",
+                          ratio, ratio));
+        EXPECT_NEAR(stats(path("limit.lsys"))["bounds"]["max"][1].get<double>(), 1 / (1 - ratio), 1e-6)
+            << ratio;
+    }
+    write("grows.lsys",
+          "lsys t {\n  steps infinite\n  width 0.01\n  axiom F\n  F -> F+(60)F-(120)F+(60)F\n}\n");
+    EXPECT_NEAR(stats(path("grows.lsys"))["bounds"]["max"][1].get<double>(), 1, 0.02);
+    EXPECT_EQ(stats(pound_sign)["volume"]["most"], 0) << "its 7 cubes of 8 are less each level";
+}
+
 /// Boxes that the unfolding meets, against dimensions that are known.
 TEST_F(Stats, BoxesHaveTheDimensionOfTheSet) {
     struct Known {
@@ -113,12 +130,12 @@ TEST_F(Stats, BoxesHaveTheDimensionOfTheSet) {
     };
     for (const auto& [scene, dimension, slack] :
          {Known{"ifs/koch_curve.rifs", 1.2618595, 0.015}, Known{"hart/sierpinski.inst", 1.5849625, 0.01},
-          Known{"ifs/fern.rifs", 1.86, 0.02}, Known{"ifs/sierpinski_carpet.rifs", 1.8927893, 0.03},
-          Known{"limits/tree.lsys", 2.72, 0.06}}) {
+          Known{"ifs/fern.rifs", 1.825, 0.02}, Known{"ifs/sierpinski_carpet.rifs", 1.8927893, 0.03},
+          Known{"limits/tree.lsys", 2.55, 0.06}}) {
         const Json boxes = stats(GRAFTAL_SOURCE_DIR "/scenes/" + std::string(scene) + " --boxes")["boxes"];
         EXPECT_NEAR(boxes["dimension"].get<double>(), dimension, slack) << scene;
         EXPECT_LT(boxes["error"].get<double>(), slack) << scene;
-        EXPECT_GE(boxes["counts"].size(), 4u) << scene;
+        EXPECT_GE(boxes["counts"].size(), 3u) << scene;
         EXPECT_GT(boxes["sides"][0].get<double>(), boxes["sides"][1].get<double>()) << scene;
         EXPECT_LE(boxes["least"], boxes["dimension"]) << scene;
         EXPECT_GE(boxes["most"], boxes["dimension"]) << scene;

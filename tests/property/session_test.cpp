@@ -3,7 +3,9 @@
 
 #include "compiler/session/session.h"
 
+#include <algorithm>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -383,6 +385,82 @@ TEST(Session, AFailureIsKept) {
     }
     EXPECT_NE(first, "");
     EXPECT_EQ(session.runs().lowered, 1u);
+}
+
+const char* const spiral =
+    "object a { instance: cube scale: 0.3  instance: a scale: 0.5 translate: 1, 0, 0 }\n";
+
+/// The picture has as much work left at every depth.
+TEST(Session, AZoomedModelHasTheAccountOfTheModel) {
+    StageOptions options;
+    options.view.size = {24, 16};
+    Session session("a.inst", spiral);
+    const auto work_of = [&] {
+        Compilation compilation;
+        const auto viewed = session.viewed(options, compilation);
+        return viewed ? viewed->model->work_seconds : -1;
+    };
+    const double whole = work_of();
+    EXPECT_GT(whole, 0);
+    for (const char* const zoom : {"2", "1e30", "1e1000"}) {
+        options.view.zoom.zoom = Magnification::parse(zoom);
+        EXPECT_EQ(work_of(), whole) << zoom;
+    }
+}
+
+TEST(Session, ADeepZoomEndsWhereItIsCancelled) {
+    StageOptions options;
+    options.view.size = {24, 16};
+    options.view.zoom.zoom = Magnification::parse("1e10000");
+    Session session("a.inst", spiral);
+    bool zooms = false;
+    session.set_control({CancelFlag([&] { return zooms; }),
+                         [&](const Progress& progress) { zooms = progress.stage == "frame"; }});
+    Compilation compilation;
+    EXPECT_FALSE(session.viewed(options, compilation));
+    EXPECT_EQ(compilation.status.message(), "interrupted");
+}
+
+TEST(Session, AZoomSaysThatItHasNoLens) {
+    StageOptions options;
+    options.view.size = {24, 16};
+    options.view.camera.location = Vec3(0, 0, 9);
+    options.view.camera.aperture = 0.1;
+    const auto said = [&] {
+        Compilation compilation;
+        Session session("a.inst", spiral);
+        const auto viewed = session.viewed(options, compilation);
+        EXPECT_TRUE(viewed);
+        if (viewed) {
+            EXPECT_EQ(viewed->view.lens.radius > 0, compilation.diagnostics.all().empty());
+        }
+        return compilation.diagnostics.render(compilation.sources);
+    };
+    EXPECT_EQ(said(), "");
+    options.view.zoom.zoom = Magnification::of(2);
+    options.view.zoom.eye = Vec3(0, 0, 9);
+    EXPECT_NE(said().find("the camera has no lens here"), std::string::npos);
+}
+
+/// The help lists the keys that the text may have (`graftal stats --help`).
+TEST(Session, EachKeyOfStatsIsListed) {
+    const std::pair<std::string, std::string> models[] = {
+        {"a.inst", spiral},
+        {"plane.inst", "object a { plane }\n"},
+        {"wide.inst", "object a { instance: sphere  instance: a scale: 2 }\n"},
+        {"plant.lsys", fmt::format(fmt::runtime(templates[0].text), 10, "F")}};
+    for (const auto& [name, text] : models) {
+        Session session(name, text);
+        Compilation compilation;
+        const auto model = session.analysed({}, compilation, true);
+        ASSERT_TRUE(model) << name;
+        const BoxCount none;
+        std::istringstream lines(stats_text(*model, {}, compilation.sources, &none));
+        for (std::string line; std::getline(lines, line);)
+            EXPECT_TRUE(std::ranges::any_of(stats_keys(), [&](const StatsKey& key) {
+                return line.starts_with(fmt::format("{:<28} ", key.name));
+            })) << line;
+    }
 }
 
 } // namespace

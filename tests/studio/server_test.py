@@ -328,6 +328,7 @@ class Sessions(Served):
             shares = [message["share"] for message in messages if has_type("progress")(message)]
             self.assertEqual(shares, sorted(shares))
             self.assertEqual(page.answer(page.ask("write", path="frames/", film=film)).get("path"), "frames/")
+            self.assertEqual(page.answer(page.ask("write", path="film.usda", film=film)).get("path"), "film.usda")
             for bad in [{}, {"frames": 2, "set": {"spread": [[0, 1]]}}, {"frames": 2, "steps": 3},
                         {"frames": 2, "set": {"spread": [[0.1, 1], [1, 2]]}}, {"frames": 2, "fps": 0}]:
                 self.assertIn("error", page.answer(page.ask("write", suffix=".gif", film=bad)), bad)
@@ -336,6 +337,7 @@ class Sessions(Served):
         subprocess.run([*line, "-o", "line/"], cwd=self.folder.name, check=True)
         here = pathlib.Path(self.folder.name)
         self.assertEqual((here / "film.png").read_bytes(), (here / "line.png").read_bytes())
+        self.assertIn("#usda 1.0", (here / "film.usda").read_text())
         frames = sorted(path.name for path in (here / "line").glob("*.png"))
         self.assertEqual(len(frames), 5)
         for name in frames:

@@ -30,7 +30,6 @@
 #include "tools/graftal/options/points.h"
 #include "tools/graftal/options/refusals.h"
 #include "tools/graftal/options/shared.h"
-#include "tools/graftal/options/studio.h"
 #include "tools/graftal/options/sweep_values.h"
 #include "tools/graftal/options/values.h"
 #include "tools/graftal/report.h"

@@ -11,6 +11,7 @@
 #include "compiler/languages/languages.h"
 #include "compiler/support/check.h"
 #include "compiler/support/text_encoding.h"
+#include "runtime/export/export_animation.h"
 #include "runtime/export/export_model.h"
 #include "runtime/image_files/image_files.h"
 #include "runtime/render/animate.h"
@@ -97,23 +98,43 @@ bool may_write(const std::string& path) {
     return lies_in(path, ".");
 }
 
-/// Does what the command line does with the job's words, over the texts of the page.
+constexpr const char* refused_words = "graftal refuses these options, and says why where it was started";
+
+/// The words of a job as the command line takes them, over the texts of the page.
+class JobCommand {
+  public:
+    JobCommand(const FileJob& job, const std::string& output, const std::string& root)
+        : files_(&disk_files()) {
+        std::vector<std::string> words = job.words;
+        words.insert(words.end(), {"-o", output});
+        options = parse_command_line(std::move(words)).options;
+        if (options) options->render.compile.lower.root = root;
+        files_.set(job.model.name, job.model.text);
+    }
+    /// Requires options.
+    CommandSession& session(Keep keep, const CancelFlag& cancel) {
+        session_.emplace(*options, options->operands.front(), keep, files_);
+        session_->set_control({cancel, {}});
+        return *session_;
+    }
+
+    std::optional<Options> options; ///< nothing if they are refused
+
+  private:
+    MemoryFiles files_;
+    std::optional<CommandSession> session_;
+};
+
+/// Does what the command line does with the job's words.
 void run_words(const FileJob& job, const std::string& output, const std::string& root,
                const CancelFlag& cancel, const StudioHome::OnShare& on_share, Compilation& compilation) {
-    std::vector<std::string> words = job.words;
-    words.insert(words.end(), {"-o", output});
-    ParsedCommandLine parsed = parse_command_line(std::move(words));
-    if (!parsed.options) {
-        compilation.status =
-            Status::failure("graftal refuses these options, and says why where it was started");
+    JobCommand command(job, output, root);
+    if (!command.options) {
+        compilation.status = Status::failure(refused_words);
         return;
     }
-    Options& options = *parsed.options;
-    options.render.compile.lower.root = root;
-    MemoryFiles files(&disk_files());
-    files.set(job.model.name, job.model.text);
-    CommandSession session(options, options.operands.front(), Keep::for_views, files);
-    session.set_control({cancel, {}});
+    Options& options = *command.options;
+    CommandSession& session = command.session(Keep::for_views, cancel);
     if (options.command->run == run_export) {
         export_model(session, export_options(options), compilation);
         return;
@@ -126,7 +147,9 @@ void run_words(const FileJob& job, const std::string& output, const std::string&
                          ? 0
                          : drawn / static_cast<double>(std::max<std::size_t>(progress.frames, 1)));
         };
-        AnimationOutcome outcome = animate_model(session, animate);
+        AnimationOutcome outcome = animation_kind(output) == AnimationKind::usd
+                                       ? export_animation(session, animate, export_options(options))
+                                       : animate_model(session, animate);
         compilation = std::move(outcome.compilation);
         if (!outcome.done && compilation.status.ok() && !compilation.diagnostics.has_errors())
             compilation.status = Status::failure("interrupted");
@@ -172,6 +195,17 @@ FileResult made_file(const FileJob& job, const std::string& root, const CancelFl
     return result;
 }
 
+/// The error that `body` returns or throws, or "".
+template<typename Body> std::string guarded(const char* what, const Body& body) {
+    try {
+        return body();
+    } catch (const std::bad_alloc&) {
+        return fmt::format("graftal has too little memory for this {}", what);
+    } catch (const std::exception& fault) {
+        return fault.what();
+    }
+}
+
 } // namespace
 
 void ProgramHome::make_file(FileJob job, CancelFlag cancel, OnShare on_share, OnResult on_result) {
@@ -180,13 +214,10 @@ void ProgramHome::make_file(FileJob job, CancelFlag cancel, OnShare on_share, On
         std::thread([job = std::move(job), cancel = std::move(cancel), on_share = std::move(on_share),
                      on_result = std::move(on_result), model = model_] {
             FileResult result;
-            try {
+            result.error = guarded("file", [&] {
                 result = made_file(job, model->root, cancel, on_share);
-            } catch (const std::bad_alloc&) {
-                result.error = "graftal has too little memory for this file";
-            } catch (const std::exception& fault) {
-                result.error = fault.what();
-            }
+                return result.error;
+            });
             on_result(std::move(result));
         });
 }
@@ -230,19 +261,13 @@ std::string draw(const FileJob& job, const std::string& root, const CancelFlag& 
     TemporaryDirectory temporary;
     if (const Status status = temporary.create(); !status.ok()) return status.message();
     const std::string output = temporary.path() + "/picture.png";
-    std::vector<std::string> words = job.words;
-    words.insert(words.end(), {"-o", output});
-    ParsedCommandLine parsed = parse_command_line(std::move(words));
-    if (!parsed.options) return "graftal refuses these options, and says why where it was started";
-    Options& options = *parsed.options;
-    options.render.compile.lower.root = root;
+    JobCommand command(job, output, root);
+    if (!command.options) return refused_words;
+    Options& options = *command.options;
     options.render.progressive = options.engine->progressive;
     HandingFilm film(options.render, on_picture);
     if (options.engine->progressive) options.render.film = &film;
-    MemoryFiles files(&disk_files());
-    files.set(job.model.name, job.model.text);
-    CommandSession session(options, options.operands.front(), Keep::nothing, files);
-    session.set_control({cancel, {}});
+    CommandSession& session = command.session(Keep::nothing, cancel);
     Compilation compilation;
     const bool is_drawn = options.engine->compile(session, options.render.compile, compilation) &&
                           options.engine->draw(session, options.render, compilation);
@@ -261,15 +286,7 @@ void ProgramHome::draw_picture(FileJob job, CancelFlag cancel, OnPicture on_pict
     if (drawer_.joinable()) drawer_.join(); // it was for a state before this one
     drawer_ = std::thread([job = std::move(job), cancel = std::move(cancel),
                            on_picture = std::move(on_picture), on_end = std::move(on_end), model = model_] {
-        std::string error;
-        try {
-            error = draw(job, model->root, cancel, on_picture);
-        } catch (const std::bad_alloc&) {
-            error = "graftal has too little memory for this picture";
-        } catch (const std::exception& fault) {
-            error = fault.what();
-        }
-        on_end(std::move(error));
+        on_end(guarded("picture", [&] { return draw(job, model->root, cancel, on_picture); }));
     });
 }
 

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/detail/graph/settle.h"
+#include "compiler/graph/masters_first.h"
 
 namespace graftal {
 
@@ -54,25 +55,8 @@ std::optional<MaterialId> most_seen(std::span<const double> shares, const std::v
 }
 
 std::vector<NodeId> masters_first(const CutGraph& cut) {
-    std::vector<NodeId> order;
-    std::vector<bool> met(cut.nodes.size(), false);
-    std::vector<std::pair<NodeId, std::size_t>> path;
-    for (NodeId start = 0; start < cut.nodes.size(); ++start) {
-        if (!met[start]) path.emplace_back(start, 0);
-        met[start] = true;
-        while (!path.empty()) {
-            const std::vector<CutEdge>& edges = cut.nodes[path.back().first].edges;
-            if (path.back().second == edges.size()) {
-                order.push_back(path.back().first);
-                path.pop_back();
-                continue;
-            }
-            const NodeId child = edges[path.back().second++].child;
-            if (!met[child]) path.emplace_back(child, 0);
-            met[child] = true;
-        }
-    }
-    return order;
+    return masters_first(cut.nodes.size(),
+                         [&](NodeId id) -> const std::vector<CutEdge>& { return cut.nodes[id].edges; });
 }
 
 void set_mean_colours(CutGraph& cut) {

@@ -121,8 +121,10 @@ class CellBuilder {
     }
 
     static void note(EdgeCell& cell, RunShape shape, double stretch) {
-        const double square = stretch * stretch;
-        const std::int32_t quarter_octave = std::ilogb(square * square);
+        int octave = 0;
+        const double share = std::frexp(stretch, &octave); // its fourth power is in range
+        const double square = share * share;
+        const std::int32_t quarter_octave = 4 * octave + std::ilogb(square * square);
         for (EdgeCell::Alike& alike : cell.alike)
             if (alike.shape == shape && alike.quarter_octave == quarter_octave) {
                 ++alike.count;

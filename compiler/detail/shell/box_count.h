@@ -20,11 +20,11 @@ struct BoxCount {
     double least_slope = 0, most_slope = 0; ///< between two rows that follow each other
 };
 
-/// Counts boxes that the node's parts meet, from the unfolding itself: each part's, on a grid of its own,
-/// move to the grids of those that hold it. So there are fewer, by up to a third, than one grid over all
-/// would have; the slope hardly changes. Sides go down to where `most_work` moves of a point
-/// (WorkRates::shell_points) or `most_boxes` end. A solid counts by its surface. No rows for an unbounded
-/// node, and no slope from less than three rows. Requires a bounded radius.
+/// Counts boxes of one grid that the node meets, by points of its unfolding (PointSystem) that lie a
+/// quarter of the smallest boxes apart; so it misses boxes that the node hardly enters. Points get closer
+/// until `most_work` moves of one (WorkRates::shell_points) or `most_boxes` points end that. A solid counts
+/// by its surface. No rows for an unbounded node, and no slope from less than three rows. Requires a bounded
+/// radius.
 BoxCount count_boxes(const CutGraph& cut, NodeId node, std::uint32_t steps, std::uint64_t most_work,
                      std::size_t most_boxes = 4'000'000);
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 
 #include "compiler/graph/attributes.h"
 #include "compiler/graph/path.h"
@@ -35,8 +34,7 @@ Instance within(const Instance& outer, const Instance& inner) {
     Instance result = inner;
     result.parent_from_child = outer.parent_from_child * inner.parent_from_child;
     const PathTint tint = PathTint(outer.tint) * PathTint(inner.tint);
-    if (tint.alpha > 0)
-        result.tint = {glm::min(tint.premultiplied / tint.alpha, Rgb(1.0)), std::min(tint.alpha, 1.0)};
+    if (tint.alpha > 0) result.tint = straight(tint);
     if (!inner.material) result.material = outer.material;
     return result;
 }

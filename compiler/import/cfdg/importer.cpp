@@ -1,25 +1,17 @@
-#include "compiler/import/cfdg/importer.h"
-
 #include "compiler/import/cfdg/parse/parser.h"
 #include "compiler/import/cfdg/unfolding.h"
 #include "compiler/import/foreign_text.h"
+#include "compiler/import/formats.h"
 
 namespace graftal {
 
 namespace cfdg {
 
-/// A file is one grammar.
-std::vector<ForeignModel> models(const ForeignFile& file) {
-    return {{"scene", file.span(0, file.text().size())}};
-}
-
 std::optional<Translation> translate(const ForeignFile& file, const ForeignModel&) {
     const std::size_t errors = file.diagnostics.error_count();
     const Grammar grammar = parse(file);
     if (file.diagnostics.error_count() > errors) return std::nullopt;
-    Translation translation = Unfolding(file, grammar).write();
-    if (file.diagnostics.error_count() > errors) return std::nullopt;
-    return translation;
+    return Unfolding(file, grammar).write();
 }
 
 bool recognises(std::string_view text) {
@@ -34,8 +26,8 @@ Importer cfdg_importer() {
             .endings = endings,
             .recognises = cfdg::recognises,
             .sign = "'startshape name', and rules",
-            .models = cfdg::models,
-            .translate = cfdg::translate};
+            .models = one_scene,
+            .translation = cfdg::translate};
 }
 
 } // namespace graftal

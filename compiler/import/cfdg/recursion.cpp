@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "compiler/graph/components.h"
 #include "compiler/import/cfdg/evaluate/evaluator.h"
 
 namespace graftal::cfdg {
@@ -32,7 +33,6 @@ Recursion::Recursion(const Grammar& grammar, Expressions& expressions)
     for (std::size_t shape = 0; shape < grammar_.shapes.size(); ++shape)
         for (const Rule& rule : grammar_.shapes[shape].rules)
             walk(shape, rule.body, 0);
-    find_components();
     find_rates();
 }
 
@@ -181,70 +181,28 @@ void Recursion::mark_callers(std::vector<bool>& marked) const {
     }
 }
 
-/// Kosaraju's two walks, without recursion.
-void Recursion::find_components() {
-    const std::size_t count = grammar_.shapes.size() + 1;
-    std::vector<std::vector<std::size_t>> to(count), back(count);
-    for (const Call& call : calls_) {
-        to[call.from].push_back(call.to);
-        back[call.to].push_back(call.from);
-    }
-    std::vector<std::size_t> order, at(count);
-    std::vector<bool> seen(count);
-    for (std::size_t root = 0; root < count; ++root) {
-        if (seen[root]) continue;
-        std::vector<std::size_t> path = {root};
-        seen[root] = true;
-        while (!path.empty()) {
-            const std::size_t id = path.back();
-            if (at[id] == to[id].size()) {
-                order.push_back(id);
-                path.pop_back();
-                continue;
-            }
-            const std::size_t next = to[id][at[id]++];
-            if (seen[next]) continue;
-            seen[next] = true;
-            path.push_back(next);
-        }
-    }
-    component_.assign(count, count);
-    std::size_t components = 0;
-    for (auto root = order.rbegin(); root != order.rend(); ++root) {
-        if (component_[*root] != count) continue;
-        std::vector<std::size_t> open = {*root};
-        component_[*root] = components;
-        while (!open.empty()) {
-            const std::size_t id = open.back();
-            open.pop_back();
-            for (const std::size_t next : back[id])
-                if (component_[next] == count) component_[next] = components, open.push_back(next);
-        }
-        ++components;
-    }
-    shrinks_.assign(components, true);
-    recurs_.assign(components, false);
-    slow_.assign(components, false);
-    branches_.assign(components, false);
-    changes_.assign(components, false);
-}
-
 void Recursion::find_rates() {
-    std::vector<std::vector<std::size_t>> members_of(shrinks_.size());
-    std::vector<std::vector<const Call*>> calls_within(shrinks_.size());
-    for (std::size_t shape = 0; shape < component_.size(); ++shape)
-        members_of[component_[shape]].push_back(shape);
+    Graph edges; // shapes as objects
+    edges.objects.resize(grammar_.shapes.size() + 1);
+    for (const Call& call : calls_)
+        edges.objects[call.from].instances.emplace_back().master = static_cast<ObjectId>(call.to);
+    Components found = strong_components(edges);
+    const std::size_t count = found.members.size();
+    component_ = std::move(found.component_of);
+    recurs_ = std::move(found.cyclic);
+    shrinks_.assign(count, true);
+    slow_ = branches_ = changes_ = std::vector<bool>(count, false);
+    std::vector<std::vector<const Call*>> calls_within(count);
     for (const Call& call : calls_)
         if (component_[call.from] == component_[call.to])
             calls_within[component_[call.from]].push_back(&call);
-    for (std::size_t component = 0; component < shrinks_.size(); ++component) {
+    for (std::size_t component = 0; component < count; ++component) {
         const std::vector<const Call*>& inner = calls_within[component];
+        if (inner.empty()) continue;
         std::map<std::size_t, std::size_t> place;
-        for (const std::size_t member : members_of[component])
+        for (const ObjectId member : found.members[component])
             place.emplace(member, place.size());
         const std::size_t n = place.size();
-        if (inner.empty()) continue;
-        recurs_[component] = true;
         changes_[component] = std::ranges::any_of(inner, &Call::changes_parameters);
         // The largest growth of any way from one to another (Floyd 1962; Warshall 1962).
         double largest = unknown;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -37,14 +38,13 @@ class Recursion {
     void call(std::size_t from, std::size_t to, const Element& element, double growth);
     double growth_of_transform(const Element& element, const std::string& space);
     void walk(std::size_t from, const Elements& elements, double growth);
-    void find_components();
     void find_rates();
     static bool fills(const std::vector<const Call*>& calls, const std::map<std::size_t, std::size_t>& place);
 
     const Grammar& grammar_;
     Expressions& expressions_;
     std::vector<Call> calls_; ///< the number behind those of the shapes is any shape that an expression names
-    std::vector<std::size_t> component_;                             ///< by shape
+    std::vector<std::uint32_t> component_;                           ///< by shape
     std::vector<bool> shrinks_, recurs_, slow_, branches_, changes_; ///< by component
 };
 

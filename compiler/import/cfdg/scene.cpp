@@ -14,7 +14,6 @@
 #include "compiler/import/own_words.h"
 #include "compiler/support/hue.h"
 #include "compiler/support/number.h"
-#include "compiler/support/srgb.h"
 
 namespace graftal::cfdg {
 
@@ -164,8 +163,7 @@ void SceneWriter::write_scene() {
             screen = rgb_from_hsv(hsv[0], hsv[1], hsv[2]);
             if (hsv[3] < 1) file_.diagnostics.note(grammar_.background->span, "the background covers here");
         }
-    line(fmt::format("background: {}, {}, {}", shortest(linear_from_srgb(screen.r)),
-                     shortest(linear_from_srgb(screen.g)), shortest(linear_from_srgb(screen.b))));
+    line("background: " + linear_text({screen.r, screen.g, screen.b}));
     write_camera();
     line("light { sun: 0,0,1  color: 0,0,0 }   # colours are as they are");
     line("material flat { color: 1,1,1  ambient: 1  diffuse: 0  specular: 0 }");

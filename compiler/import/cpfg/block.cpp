@@ -36,12 +36,7 @@ class BlockReader {
         return at_ >= text_.size();
     }
 
-    std::string_view word() const {
-        std::size_t end = at_;
-        while (end < text_.size() && is_cpfg_name(text_[end]))
-            ++end;
-        return text_.substr(at_, end - at_);
-    }
+    std::string_view word() const { return cpfg_name_at(text_, at_); }
 
     bool accept(std::string_view wanted) {
         if (at_end() || word() != wanted) return false;
@@ -100,9 +95,8 @@ class BlockReader {
             fail("expected '(' behind 'if' or 'while'");
             return "0";
         }
-        const std::size_t begin = ++at_;
-        for (int depth = 1; at_ < text_.size() && depth > 0; ++at_)
-            depth += (text_[at_] == '(') - (text_[at_] == ')');
+        const std::size_t begin = at_ + 1;
+        at_ = std::min(end_of_parentheses(text_, at_), text_.size());
         return names_.expression(text_.substr(begin, at_ - begin - 1), span_);
     }
 

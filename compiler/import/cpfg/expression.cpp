@@ -43,8 +43,6 @@ class ExpressionWriter {
     }
 
   private:
-    static bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-
     /// Without `?` outside of parentheses.
     std::string plain(std::string_view text, int depth) {
         std::string out;
@@ -53,14 +51,11 @@ class ExpressionWriter {
             if (std::isdigit(static_cast<unsigned char>(c)) || c == '.') {
                 do
                     out += text[i++];
-                while (i < text.size() && (is_name(text[i]) || text[i] == '.'));
-            } else if (is_name(c)) {
-                std::size_t end = i;
-                while (end < text.size() && is_name(text[end]))
-                    ++end;
-                const std::string_view name = text.substr(i, end - i);
-                i = end;
-                const std::size_t next = text.find_first_not_of(' ', end);
+                while (i < text.size() && (is_cpfg_name(text[i]) || text[i] == '.'));
+            } else if (is_cpfg_name(c)) {
+                const std::string_view name = cpfg_name_at(text, i);
+                i += name.size();
+                const std::size_t next = text.find_first_not_of(' ', i);
                 if (next != std::string_view::npos && text[next] == '(')
                     out += call(name, text, i = next, depth);
                 else
@@ -89,22 +84,17 @@ class ExpressionWriter {
 
     /// The text between the parenthesis at `i` and its end; moves `i` past that end.
     std::string_view parentheses(std::string_view text, std::size_t& i) {
-        const std::size_t begin = ++i;
-        int depth = 1;
-        for (; i < text.size() && depth > 0; ++i)
-            depth += (text[i] == '(') - (text[i] == ')');
-        if (depth > 0) complain_("a '(' is not closed");
-        return text.substr(begin, i - begin - (depth == 0 ? 1 : 0));
+        const std::size_t begin = i + 1, end = end_of_parentheses(text, i);
+        const bool closed = end != std::string_view::npos;
+        if (!closed) complain_("a '(' is not closed");
+        i = closed ? end : text.size();
+        return text.substr(begin, i - begin - (closed ? 1 : 0));
     }
 
     std::string call(std::string_view name, std::string_view text, std::size_t& i, int depth) {
         const std::string_view inside = parentheses(text, i);
-        std::vector<std::string_view> arguments;
-        for (std::size_t begin = 0; begin <= inside.size();) {
-            const std::size_t comma = std::min(find_outside(inside, ",", begin), inside.size());
-            arguments.push_back(inside.substr(begin, comma - begin));
-            begin = comma + 1;
-        }
+        std::vector<std::string_view> arguments = split_outside(inside);
+        if (arguments.empty()) arguments.emplace_back();
         std::vector<std::string> each;
         std::string written;
         for (const std::string_view argument : arguments) {
@@ -138,6 +128,47 @@ std::size_t find_outside(std::string_view text, std::string_view characters, std
         depth = std::max(depth, 0);
     }
     return std::string_view::npos;
+}
+
+std::vector<std::string_view> split_outside(std::string_view text, bool squares_count) {
+    std::vector<std::string_view> parts;
+    if (trimmed(text).empty()) return parts;
+    int round = 0, square = 0;
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i <= text.size(); ++i) {
+        const char c = i < text.size() ? text[i] : ',';
+        round = std::max(0, round + (c == '(') - (c == ')'));
+        if (squares_count) square += (c == '[') - (c == ']');
+        if (i < text.size() && (c != ',' || round > 0 || square > 0)) continue;
+        parts.push_back(trimmed(text.substr(begin, i - begin)));
+        begin = i + 1;
+    }
+    return parts;
+}
+
+std::size_t end_of_parentheses(std::string_view text, std::size_t open) {
+    int depth = 0;
+    for (std::size_t i = open; i < text.size(); ++i) {
+        depth += (text[i] == '(') - (text[i] == ')');
+        if (depth == 0) return i + 1;
+    }
+    return std::string_view::npos;
+}
+
+bool is_cpfg_name(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
+
+std::string_view cpfg_name_at(std::string_view text, std::size_t begin) {
+    std::size_t end = begin;
+    while (end < text.size() && is_cpfg_name(text[end]))
+        ++end;
+    return text.substr(begin, end - begin);
+}
+
+bool is_cpfg_parameter(std::string_view text) {
+    return !text.empty() && std::ranges::all_of(text, is_cpfg_name) &&
+           !std::isdigit(static_cast<unsigned char>(text[0]));
 }
 
 std::string translated_cpfg_expression(std::string_view text, const CpfgCalls& calls,

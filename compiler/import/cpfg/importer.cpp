@@ -1,24 +1,62 @@
-#include "compiler/import/cpfg/importer.h"
-
 #include <algorithm>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
-#include "compiler/import/cpfg/companions.h"
 #include "compiler/import/cpfg/names.h"
 #include "compiler/import/cpfg/reader.h"
 #include "compiler/import/cpfg/source.h"
 #include "compiler/import/cpfg/view.h"
 #include "compiler/import/cpfg/write/writer.h"
 #include "compiler/import/foreign_text.h"
+#include "compiler/import/formats.h"
 #include "compiler/support/path_text.h"
 
 namespace graftal {
 
 namespace {
 
-std::vector<ForeignModel> cpfg_models(const ForeignFile& file) {
-    const std::string name(stem_of(file.sources.name(file.file)));
-    return {{name, file.span(0, std::min<std::size_t>(file.text().find('\n'), file.text().size()))}};
+/// The files that go with a model; "" for those that it has not.
+struct CpfgCompanions {
+    std::string view;        ///< view file
+    std::string environment; ///< of the environment program
+};
+
+bool ends_in(std::string_view word, std::string_view ending) {
+    return word.size() > ending.size() && word.ends_with(ending);
+}
+
+/// The files that the model's `specifications` name; else the view file has the model's name.
+CpfgCompanions find_cpfg_companions(const ForeignFile& file) {
+    CpfgCompanions found;
+    const std::string_view own = file.sources.name(file.file);
+    if (const auto specifications = file.read_beside("specifications")) {
+        const std::string_view text = file.sources.text(*specifications);
+        for (const TextLine& line : lines_of(text, 0, text.size())) {
+            std::istringstream words{std::string(line.text)};
+            std::vector<std::string> command;
+            for (std::string word; words >> word;)
+                command.push_back(word);
+            bool names_own = false;
+            for (const std::string& word : command)
+                names_own = names_own || word == file_name_of(own);
+            if (command.empty() || !command[0].starts_with("cpfg") || !names_own) continue;
+            for (std::size_t i = 1; i < command.size(); ++i) {
+                if (command[i - 1] == "-e") found.environment = command[i];
+                if (found.view.empty() && (ends_in(command[i], ".v") || ends_in(command[i], ".view")))
+                    found.view = command[i];
+            }
+            return found;
+        }
+    }
+    for (const char* ending : {".v", ".view"}) {
+        const std::string name = std::string(stem_of(own)) + ending;
+        if (found.view.empty() && file.read_beside(name)) found.view = name;
+    }
+    return found;
 }
 
 /// A line begins with "Lsystem:".
@@ -37,10 +75,7 @@ std::optional<Translation> translate_cpfg(const ForeignFile& file, const Foreign
     CpfgNames names(file, *source, view);
     std::optional<CpfgSystem> system = read_cpfg_system(names);
     if (!system) return std::nullopt;
-    const std::size_t errors = file.diagnostics.error_count();
-    Translation out = write_cpfg_system(names, std::move(*system), model, companions.environment);
-    if (file.diagnostics.error_count() > errors) return std::nullopt;
-    return out;
+    return write_cpfg_system(names, std::move(*system), model, companions.environment);
 }
 
 constexpr std::string_view cpfg_endings[] = {"l"};
@@ -48,7 +83,7 @@ constexpr std::string_view cpfg_endings[] = {"l"};
 } // namespace
 
 Importer cpfg_importer() {
-    return {"cpfg L-system", cpfg_endings, is_cpfg, "a line 'Lsystem: 1'", cpfg_models, translate_cpfg};
+    return {"cpfg L-system", cpfg_endings, is_cpfg, "a line 'Lsystem: 1'", one_model, translate_cpfg};
 }
 
 } // namespace graftal

@@ -17,10 +17,6 @@
 
 namespace graftal {
 
-bool is_cpfg_name(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
-}
-
 CpfgNames::CpfgNames(const ForeignFile& file, const CpfgSource& source, const CpfgView& view,
                      const CpfgDialect* dialect)
     : file_(file), source_(source), view_(view), dialect_(dialect) {
@@ -55,13 +51,9 @@ std::string CpfgNames::with_own_names(std::string text) const {
     if (renamed_.empty()) return text;
     std::string out;
     for (std::size_t i = 0; i < text.size();) {
-        const std::size_t begin = i;
-        while (i < text.size() && is_cpfg_name(text[i]))
-            ++i;
-        if (i > begin)
-            out += own_name(std::string_view(text).substr(begin, i - begin));
-        else
-            out += text[i++];
+        const std::string_view name = cpfg_name_at(text, i);
+        out += name.empty() ? std::string(1, text[i]) : own_name(name);
+        i += std::max<std::size_t>(name.size(), 1);
     }
     return out;
 }
@@ -80,13 +72,10 @@ void CpfgNames::find_lets() {
                 while (i < body.size() && (is_cpfg_name(body[i]) || body[i] == '.'))
                     ++i;
             } else if (is_cpfg_name(body[i])) {
-                std::size_t end = i;
-                while (end < body.size() && is_cpfg_name(body[end]))
-                    ++end;
-                const std::string name(body.substr(i, end - i));
+                const std::string name(cpfg_name_at(body, i));
                 constexpr std::string_view known[] = {"sin", "cos", "tan", "sqrt", "exp", "log"};
                 number = lets_.contains(name) || std::ranges::find(known, name) != std::end(known);
-                i = end;
+                i += name.size();
             } else {
                 number = std::string_view("+-*/^() ").find(body[i]) != std::string_view::npos;
                 ++i;

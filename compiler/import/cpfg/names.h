@@ -15,8 +15,6 @@ namespace graftal {
 
 struct CpfgDialect;
 
-bool is_cpfg_name(char c);
-
 /// The meanings of the names of a cpfg model: its macros and its functions. Reports names without a meaning.
 class CpfgNames {
   public:

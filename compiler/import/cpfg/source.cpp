@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/import/cpfg/condition.h"
+#include "compiler/import/cpfg/expression.h"
 #include "compiler/import/foreign_text.h"
 
 namespace graftal {
@@ -20,9 +21,6 @@ constexpr int most_nested = 64; ///< macros in macros, and files in files
 
 bool begins_name(char c) {
     return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
-}
-bool goes_on_name(char c) {
-    return begins_name(c) || std::isdigit(static_cast<unsigned char>(c));
 }
 
 /// A character of the text without comments, with its place.
@@ -172,10 +170,7 @@ class SourceReader {
 
     void directive(std::string_view words, const std::vector<Placed>& line, int depth) {
         const Span span = at(line.front().place, line.back().place + 1);
-        std::size_t end = 0;
-        while (end < words.size() && goes_on_name(words[end]))
-            ++end;
-        const std::string_view name = words.substr(0, end), rest = trimmed(words.substr(end));
+        const std::string_view name = cpfg_name_at(words), rest = trimmed(words.substr(name.size()));
         if (name == "ifdef" || name == "ifndef" || name == "if") return begin_condition(name, rest, span);
         if (name == "else" || name == "elif" || name == "endif") return next_condition(name, rest, span);
         if (!active()) return;
@@ -231,10 +226,9 @@ class SourceReader {
             if (found == text.size()) break;
             const std::size_t begin =
                 std::min(text.find_first_not_of(" (", found + word.size()), text.size());
-            std::size_t end = begin;
-            while (end < text.size() && goes_on_name(text[end]))
-                ++end;
-            out += is_defined(text.substr(begin, end - begin)) ? "1" : "0";
+            const std::string_view name = cpfg_name_at(text, begin);
+            const std::size_t end = begin + name.size();
+            out += is_defined(name) ? "1" : "0";
             const bool closes = text.substr(found, begin - found).find('(') != std::string_view::npos;
             i = closes ? std::min(text.find(')', end), text.size() - 1) + 1 : end;
         }
@@ -243,10 +237,8 @@ class SourceReader {
 
     void define(std::string_view rest, Span span) {
         CpfgMacro macro{.span = span};
-        std::size_t end = 0;
-        while (end < rest.size() && goes_on_name(rest[end]))
-            ++end;
-        macro.name = rest.substr(0, end);
+        macro.name = cpfg_name_at(rest);
+        std::size_t end = macro.name.size();
         if (macro.name.empty()) {
             file_.diagnostics.error(span, "expected a name after '#define'");
             return;
@@ -319,16 +311,13 @@ class MacroWriter {
                 const bool number = std::isdigit(static_cast<unsigned char>(text[i]));
                 do
                     out += text[i++];
-                while (number && i < text.size() && (goes_on_name(text[i]) || text[i] == '.'));
+                while (number && i < text.size() && (is_cpfg_name(text[i]) || text[i] == '.'));
                 continue;
             }
-            std::size_t end = i;
-            while (end < text.size() && goes_on_name(text[end]))
-                ++end;
-            const std::string_view name = text.substr(i, end - i);
+            const std::string_view name = cpfg_name_at(text, i);
             const auto macro = std::ranges::find(macros_, name, &CpfgMacro::name);
             const bool free = std::ranges::find(under_way, name) == under_way.end();
-            i = end;
+            i += name.size();
             if (macro == macros_.end() || !free || !chosen_(*macro) ||
                 !append(*macro, text, i, under_way, out))
                 out += name;
@@ -372,10 +361,7 @@ class MacroWriter {
                 body += macro.body[b++];
                 continue;
             }
-            std::size_t end = b;
-            while (end < macro.body.size() && goes_on_name(macro.body[end]))
-                ++end;
-            const std::string name = macro.body.substr(b, end - b);
+            const std::string_view name = cpfg_name_at(macro.body, b);
             const auto parameter = std::ranges::find(*macro.parameters, name);
             const auto place = static_cast<std::size_t>(parameter - macro.parameters->begin());
             if (parameter == macro.parameters->end())
@@ -384,7 +370,7 @@ class MacroWriter {
                 body += expanded(trimmed(arguments[place]), under_way);
             failed_ = failed_ || body.size() > most_source_bytes;
             if (failed_) return true;
-            b = end;
+            b += name.size();
         }
         out += expanded(body, inside);
         return true;

@@ -21,13 +21,7 @@ std::string expanded_string(std::string_view text, CpfgNames& names, Span span) 
     std::string out;
     for (std::size_t i = 0; i < text.size();) {
         const std::size_t open = std::min(text.find('(', i), text.size());
-        std::size_t close = open;
-        int depth = 0;
-        do {
-            if (close >= text.size()) break;
-            depth += (text[close] == '(') - (text[close] == ')');
-            ++close;
-        } while (depth > 0);
+        const std::size_t close = std::min(end_of_parentheses(text, open), text.size());
         // A macro with arguments takes its parentheses along.
         std::size_t name = open;
         while (name > i && is_cpfg_name(text[name - 1]))
@@ -55,20 +49,14 @@ void skip_blanks(std::string_view text, std::size_t& i) {
 void take_parameters(std::string_view text, std::size_t& i, CpfgModule& module, CpfgNames& names, Span span) {
     if (i >= text.size() || text[i] != '(') return;
     module.has_parentheses = true;
-    const std::size_t begin = ++i;
-    int depth = 1;
-    for (; i < text.size() && depth > 0; ++i)
-        depth += (text[i] == '(') - (text[i] == ')');
-    if (depth > 0) {
+    const std::size_t begin = i + 1, end = end_of_parentheses(text, i);
+    i = std::min(end, text.size());
+    if (end == std::string_view::npos) {
         names.error(span, fmt::format("the '(' after '{}' is not closed", module.symbol));
         return;
     }
-    const std::string_view inside = text.substr(begin, i - begin - 1);
-    for (std::size_t from = 0; from <= inside.size() && !trimmed(inside).empty();) {
-        const std::size_t comma = std::min(find_outside(inside, ",", from), inside.size());
-        module.parameters.emplace_back(trimmed(inside.substr(from, comma - from)));
-        from = comma + 1;
-    }
+    for (const std::string_view parameter : split_outside(text.substr(begin, end - begin - 1)))
+        module.parameters.emplace_back(parameter);
 }
 
 } // namespace

@@ -1,5 +1,3 @@
-#include "compiler/import/cpfg/surface.h"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -9,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
+#include "compiler/import/formats.h"
 #include "compiler/support/number.h"
-#include "compiler/support/path_text.h"
 
 namespace graftal {
 
@@ -93,11 +91,6 @@ Surface read_surface(const ForeignFile& file) {
     return surface;
 }
 
-std::vector<ForeignModel> surface_models(const ForeignFile& file) {
-    const std::string name(stem_of(file.sources.name(file.file)));
-    return {{name, file.span(0, std::min(file.text().find('\n'), file.text().size()))}};
-}
-
 bool is_surface(std::string_view text) {
     return text.find("CONTACT POINT") != std::string_view::npos &&
            (text.find("patch") != std::string_view::npos || text.find("TOP COLOR") != std::string_view::npos);
@@ -152,7 +145,7 @@ constexpr std::string_view surface_endings[] = {"s"};
 
 Importer vlab_surface_importer() {
     return {"vlab surface", surface_endings,  is_surface, "'CONTACT POINT' and a patch",
-            surface_models, translate_surface};
+            one_model,      translate_surface};
 }
 
 } // namespace graftal

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "compiler/import/cpfg/curve.h"
 #include "compiler/import/importer.h"
 
 namespace graftal {
@@ -29,6 +29,12 @@ struct CpfgTropism {
     double elasticity = 0;
     double angle_deg = 0; ///< angle between headings and the direction that they tend to
     bool twists = false;
+};
+
+/// A curve in space by points at even distances along it.
+struct CpfgCurve {
+    std::array<std::vector<double>, 3> points; ///< x, y, z
+    double length = 0;
 };
 
 /// A curve that `curve:` names.

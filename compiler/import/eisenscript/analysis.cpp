@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -234,9 +233,9 @@ Analysis::Analysis(const Script& script, const Limits& limits) : script_(script)
         groups_[known->second].rules.push_back(rule);
         group_of_rule_.push_back(known->second);
     }
-    find_components();
+    const Components components = find_components();
     if (too_deep()) return;
-    find_heights();
+    find_heights(components);
     count();
 }
 
@@ -251,89 +250,56 @@ const Group* Analysis::group(const std::string& name) const {
     return found == by_name_.end() ? nullptr : &groups_[found->second];
 }
 
-/// Strong components (Tarjan 1972), without recursion.
-void Analysis::find_components() {
-    const std::size_t count = groups_.size();
-    std::vector<std::vector<std::size_t>> calls(count);
-    for (std::size_t id = 0; id < count; ++id)
-        for (const std::size_t rule : groups_[id].rules) {
-            const auto add = [&](const std::string& name) {
-                if (const Group* const to = group(name))
-                    calls[id].push_back(static_cast<std::size_t>(to - groups_.data()));
-            };
+Components Analysis::find_components() {
+    Graph calls; // groups as objects
+    for (const Group& from : groups_) {
+        Object& object = calls.objects.emplace_back();
+        const auto add = [&](const std::string& name) {
+            if (const Group* const to = group(name))
+                object.instances.emplace_back().master = static_cast<ObjectId>(to - groups_.data());
+        };
+        for (const std::size_t rule : from.rules) {
             for (const Action& action : script_.rules[rule].actions)
                 add(action.target.text);
             if (script_.rules[rule].fallback) add(script_.rules[rule].fallback->text);
         }
-    constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-    std::vector<std::size_t> number(count, none), low(count), at(count), stack, path;
-    std::vector<bool> open(count);
-    std::size_t next = 0, components = 0;
-    for (std::size_t root = 0; root < count; ++root) {
-        if (number[root] != none) continue;
-        path.push_back(root);
-        while (!path.empty()) {
-            const std::size_t id = path.back();
-            if (number[id] == none) {
-                number[id] = low[id] = next++;
-                stack.push_back(id);
-                open[id] = true;
-            }
-            if (at[id] < calls[id].size()) {
-                const std::size_t to = calls[id][at[id]++];
-                if (number[to] == none)
-                    path.push_back(to);
-                else if (open[to])
-                    low[id] = std::min(low[id], number[to]);
-                if (to == id) groups_[id].recurs = true;
-                continue;
-            }
-            path.pop_back();
-            if (!path.empty()) low[path.back()] = std::min(low[path.back()], low[id]);
-            if (low[id] != number[id]) continue;
-            std::vector<std::size_t> members;
-            do {
-                members.push_back(stack.back());
-                open[stack.back()] = false;
-                stack.pop_back();
-            } while (members.back() != id);
-            std::vector<std::size_t> counters;
-            for (const std::size_t member : members) {
-                groups_[member].component = components;
-                if (members.size() > 1) groups_[member].recurs = true;
-                for (const std::size_t rule : groups_[member].rules)
-                    if (script_.rules[rule].depth) counters.push_back(rule);
-            }
-            std::ranges::sort(counters);
-            if (counters.size() > most_counters) counters.resize(most_counters + 1); // more than is read
-            for (const std::size_t member : members)
-                if (groups_[member].recurs) groups_[member].counters = counters;
-            ++components;
-        }
     }
+    Components found = strong_components(calls);
+    for (std::size_t component = 0; component < found.members.size(); ++component) {
+        std::vector<std::size_t> counters;
+        for (const ObjectId member : found.members[component]) {
+            groups_[member].component = component;
+            groups_[member].recurs = found.cyclic[component];
+            for (const std::size_t rule : groups_[member].rules)
+                if (script_.rules[rule].depth) counters.push_back(rule);
+        }
+        std::ranges::sort(counters);
+        if (counters.size() > most_counters) counters.resize(most_counters + 1); // more than is read
+        if (found.cyclic[component])
+            for (const ObjectId member : found.members[component])
+                groups_[member].counters = counters;
+    }
+    return found;
 }
 
-void Analysis::find_heights() {
-    // Components are numbered from the ends of the calls upwards.
-    std::vector<std::size_t> order(groups_.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        order[i] = i;
-    std::ranges::stable_sort(order, {}, [&](std::size_t id) { return groups_[id].component; });
-    for (const std::size_t id : order) {
-        Group& group = groups_[id];
-        group.endless = group.recurs;
-        group.height = 1;
-        const auto look = [&](const std::string& name, std::size_t generations) {
-            const Group* const to = this->group(name);
-            group.endless = group.endless || (to && to->endless);
-            group.height = std::max(group.height, to ? to->height + generations : 1 + generations);
-        };
-        for (const std::size_t rule : group.rules) {
-            for (const Action& action : script_.rules[rule].actions)
-                look(action.target.text, 1);
-            if (script_.rules[rule].fallback) look(script_.rules[rule].fallback->text, 0);
+/// Components are numbered from the ends of the calls upwards.
+void Analysis::find_heights(const Components& components) {
+    for (const std::vector<ObjectId>& members : components.members)
+        for (const ObjectId id : members) {
+            Group& group = groups_[id];
+            group.endless = group.recurs;
+            group.height = 1;
+            const auto look = [&](const std::string& name, std::size_t generations) {
+                const Group* const to = this->group(name);
+                group.endless = group.endless || (to && to->endless);
+                group.height = std::max(group.height, to ? to->height + generations : 1 + generations);
+            };
+            for (const std::size_t rule : group.rules) {
+                for (const Action& action : script_.rules[rule].actions)
+                    look(action.target.text, 1);
+                if (script_.rules[rule].fallback) look(script_.rules[rule].fallback->text, 0);
+            }
         }
-    }
 }
 
 void Analysis::count() {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/graph/components.h"
 #include "compiler/import/eisenscript/parser.h"
 #include "compiler/support/affine.h"
 
@@ -26,7 +27,6 @@ struct Limits {
     int generations = 1000; ///< maxdepth
     double objects = 100'000;
     std::optional<double> least_size, most_size; ///< of the cube's diagonal
-    Span generations_span, objects_span;
 };
 
 /// The map of the operators of a loop, about the middle of the unit cube.
@@ -62,8 +62,8 @@ class Analysis {
     double objects() const { return objects_; }
 
   private:
-    void find_components();
-    void find_heights();
+    Components find_components();
+    void find_heights(const Components& components);
     void count();
 
     const Script& script_;

@@ -1,31 +1,16 @@
-#include "compiler/import/eisenscript/importer.h"
-
 #include <cctype>
-
-#include <fmt/format.h>
 
 #include "compiler/import/eisenscript/parser.h"
 #include "compiler/import/eisenscript/writer.h"
 #include "compiler/import/foreign_text.h"
+#include "compiler/import/formats.h"
 
 namespace graftal {
 
 namespace eisenscript {
 
-/// A file is one script.
-std::vector<ForeignModel> models(const ForeignFile& file) {
-    return {{"scene", file.span(0, file.text().size())}};
-}
-
-constexpr std::size_t most_bytes = 1'000'000; ///< of a script
-
 std::optional<Translation> translate(const ForeignFile& file, const ForeignModel&) {
     const std::size_t errors = file.diagnostics.error_count();
-    if (file.text().size() > most_bytes) {
-        file.diagnostics.error(file.span(0, 0),
-                               fmt::format("a script has at most {} characters", most_bytes));
-        return std::nullopt;
-    }
     const Script script = parse(file);
     if (file.diagnostics.error_count() > errors) return std::nullopt;
     if (script.rules.front().actions.empty()) {
@@ -35,9 +20,7 @@ std::optional<Translation> translate(const ForeignFile& file, const ForeignModel
     }
     Writer writer(file, script);
     if (file.diagnostics.error_count() > errors) return std::nullopt;
-    Translation translation = writer.write();
-    if (file.diagnostics.error_count() > errors) return std::nullopt;
-    return translation;
+    return writer.write();
 }
 
 /// A line begins with an action, as `3 * { x 1 } box`, or sets something that no other language knows.
@@ -67,8 +50,9 @@ Importer eisenscript_importer() {
             .endings = endings,
             .recognises = eisenscript::recognises,
             .sign = "rules such as 'rule name { { x 1 } box }'",
-            .models = eisenscript::models,
-            .translate = eisenscript::translate};
+            .models = one_scene,
+            .translation = eisenscript::translate,
+            .most_bytes = 1'000'000};
 }
 
 } // namespace graftal

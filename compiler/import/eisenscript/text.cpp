@@ -5,11 +5,9 @@
 #include <numbers>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <glm/geometric.hpp>
 
 #include "compiler/support/number.h"
-#include "compiler/support/srgb.h"
 
 namespace graftal::eisenscript {
 
@@ -18,16 +16,9 @@ Hsv hsv_of(const std::array<double, 3>& rgb) {
 }
 
 std::string hsv_text(const std::array<double, 3>& rgb) {
-    const Hsv hsv = hsv_from_rgb(Rgb(rgb[0], rgb[1], rgb[2]));
+    const Hsv hsv = hsv_of(rgb);
     return fmt::format("hsv({}, {}, {})", shortest(hsv.hue_deg), shortest(hsv.saturation),
                        shortest(hsv.value));
-}
-
-std::string linear_text(const std::array<double, 3>& rgb) {
-    std::vector<std::string> parts;
-    for (const double part : rgb)
-        parts.push_back(shortest(linear_from_srgb(part)));
-    return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::string vector_text(Vec3 v) {

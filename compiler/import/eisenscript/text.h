@@ -16,8 +16,6 @@ namespace graftal::eisenscript {
 Hsv hsv_of(const std::array<double, 3>& rgb);
 /// `hsv(30, 1, 0.5)`, to what screens tell apart.
 std::string hsv_text(const std::array<double, 3>& rgb);
-/// Linear light of an sRGB colour: `0.5, 0.2, 0`.
-std::string linear_text(const std::array<double, 3>& rgb);
 std::string vector_text(Vec3 v);
 /// An instance of our triangle with these corners; nothing if they lie on a line.
 std::optional<std::string> triangle_map(Vec3 a, Vec3 b, Vec3 c);

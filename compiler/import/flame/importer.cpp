@@ -1,5 +1,3 @@
-#include "compiler/import/flame/importer.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "compiler/import/flame/reader.h"
 #include "compiler/import/flame/variations.h"
 #include "compiler/import/foreign_text.h"
+#include "compiler/import/formats.h"
 #include "compiler/import/own_words.h"
 #include "compiler/import/spectral_radius.h"
 #include "compiler/support/angle.h"
@@ -403,7 +402,7 @@ Importer flame_importer() {
             .recognises = flame::recognises,
             .sign = "an element '<flame ...>'",
             .models = flame::models,
-            .translate = flame::translate,
+            .translation = flame::translate,
             .host = "XML or HTML"};
 }
 

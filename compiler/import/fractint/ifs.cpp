@@ -1,5 +1,3 @@
-#include "compiler/import/fractint/ifs.h"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -10,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
+#include "compiler/import/formats.h"
 #include "compiler/import/own_words.h"
 #include "compiler/import/spectral_radius.h"
 #include "compiler/support/number.h"
@@ -452,7 +451,7 @@ Importer fractint_ifs_importer() {
             .recognises = fractint_ifs::recognises,
             .sign = "a block 'name { .5 0 0 .5 0 0 1 ... }' of rows of numbers, or such rows alone",
             .models = fractint_ifs::models,
-            .translate = fractint_ifs::translate};
+            .translation = fractint_ifs::translate};
 }
 
 } // namespace graftal

@@ -1,5 +1,3 @@
-#include "compiler/import/fractint/lsystem.h"
-
 #include <algorithm>
 #include <cctype>
 #include <set>
@@ -7,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
+#include "compiler/import/formats.h"
 #include "compiler/import/fractint/system.h"
 #include "compiler/support/small_letters.h"
 

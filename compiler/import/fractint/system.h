@@ -48,8 +48,8 @@ bool takes_number(char letter);
 /// The system of a block; nothing after an error.
 std::optional<FractintSystem> read_fractint_system(const ForeignFile& file, const ForeignModel& model);
 
-/// The system as a model of ours; nothing after an error.
-std::optional<Translation> write_fractint_system(const ForeignFile& file, const ForeignModel& model,
-                                                 const FractintSystem& system);
+/// The system as a model of ours; of no use after an error.
+Translation write_fractint_system(const ForeignFile& file, const ForeignModel& model,
+                                  const FractintSystem& system);
 
 } // namespace graftal

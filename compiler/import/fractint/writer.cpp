@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "compiler/import/foreign_text.h"
 #include "compiler/support/small_letters.h"
@@ -19,35 +20,27 @@ namespace {
 constexpr double most_lines = 8000;
 constexpr int most_steps = 14;
 
-struct EgaColour {
-    const char* name;
-    const char* rgb;
-};
+/// The first sixteen of Fractint's palette.
+constexpr std::array<std::string_view, 16> ega_names = {
+    "black",     "blue",          "green",     "cyan",       "red",         "magenta",
+    "brown",     "light_grey",    "dark_grey", "light_blue", "light_green", "light_cyan",
+    "light_red", "light_magenta", "yellow",    "white"};
 
-/// The first sixteen of Fractint's palette, as linear light.
-constexpr std::array<EgaColour, 16> ega_colours = {{{"black", "0, 0, 0"},
-                                                    {"blue", "0, 0, 0.4"},
-                                                    {"green", "0, 0.4, 0"},
-                                                    {"cyan", "0, 0.4, 0.4"},
-                                                    {"red", "0.4, 0, 0"},
-                                                    {"magenta", "0.4, 0, 0.4"},
-                                                    {"brown", "0.4, 0.09, 0"},
-                                                    {"light_grey", "0.4, 0.4, 0.4"},
-                                                    {"dark_grey", "0.09, 0.09, 0.09"},
-                                                    {"light_blue", "0.09, 0.09, 1"},
-                                                    {"light_green", "0.09, 1, 0.09"},
-                                                    {"light_cyan", "0.09, 1, 1"},
-                                                    {"light_red", "1, 0.09, 0.09"},
-                                                    {"light_magenta", "1, 0.09, 1"},
-                                                    {"yellow", "1, 1, 0.09"},
-                                                    {"white", "1, 1, 1"}}};
+/// The linear light of such a colour, whose bits are blue, green, red and intensity. Brown has less green.
+std::string ega_colour(std::size_t number) {
+    const bool light = number > 7;
+    const auto part = [&](std::size_t bit) {
+        return (number & bit) != 0 ? (light ? 1 : 0.4) : (light ? 0.09 : 0);
+    };
+    return fmt::format("{}, {}, {}", part(4), number == 6 ? 0.09 : part(2), part(1));
+}
 
 class FractintWriter {
   public:
     FractintWriter(const ForeignFile& file, const ForeignModel& model, const FractintSystem& system)
         : file_(file), model_(model), system_(system) {}
 
-    std::optional<Translation> write() {
+    Translation write() {
         gather();
         Translation out{"lsys", {}, {}};
         out.line(fmt::format("# {}: an L-system of Fractint", comment_text(model_.name)), model_.span);
@@ -55,26 +48,26 @@ class FractintWriter {
             out.line("# " + remark, span);
         if (uses("c<>")) {
             out.line("background: 0, 0, 0");
-            for (const EgaColour& colour : ega_colours)
-                out.line(fmt::format("material {} {{ color: {}  ambient: 1  diffuse: 0 }}", colour.name,
-                                     colour.rgb));
+            for (std::size_t i = 0; i < ega_names.size(); ++i)
+                out.line(fmt::format("material {} {{ color: {}  ambient: 1  diffuse: 0 }}", ega_names[i],
+                                     ega_colour(i)));
         }
         out.line(fmt::format("lsys {} {{", block_name(model_.name)), model_.span);
         if (const std::string names = declared(); !names.empty()) out.line("  modules " + names);
-        if (uses("c<>")) out.line("  colors " + colour_names());
-        out.line(fmt::format("  angle 360/{}{}", system_.angle, remark(system_.angle_comment)),
+        if (uses("c<>")) out.line(fmt::format("  colors {}", fmt::join(ega_names, ", ")));
+        out.line(fmt::format("  angle 360/{}{}", system_.angle, remark_text(system_.angle_comment)),
                  system_.angle_span);
         const auto [steps, lines] = steps_to_draw();
-        out.line(
-            fmt::format("  steps {}{}", steps,
-                        remark(fmt::format("Fractint's order; with this it draws {:.0f} lines", lines))));
-        out.line(
-            fmt::format("  axiom {}{}{}", beginning(), text_of(system_.axiom), remark(system_.axiom_comment)),
-            system_.axiom_span);
+        out.line(fmt::format(
+            "  steps {}{}", steps,
+            remark_text(fmt::format("Fractint's order; with this it draws {:.0f} lines", lines))));
+        out.line(fmt::format("  axiom {}{}{}", beginning(), text_of(system_.axiom),
+                             remark_text(system_.axiom_comment)),
+                 system_.axiom_span);
         for (const FractintRule& rule : system_.rules) {
             const std::string successor = text_of(rule.successor);
             out.line(fmt::format("  {} -> {}{}", name_of(rule.letter), successor.empty() ? "*" : successor,
-                                 remark(rule.comment)),
+                                 remark_text(rule.comment)),
                      rule.span);
         }
         if (two_headings_) {
@@ -105,17 +98,6 @@ class FractintWriter {
 
     bool has_rule(char letter) const {
         return std::ranges::find(system_.rules, letter, &FractintRule::letter) != system_.rules.end();
-    }
-
-    static std::string remark(const std::string& comment) {
-        return comment.empty() ? std::string() : "   # " + comment;
-    }
-
-    std::string colour_names() const {
-        std::string names;
-        for (const EgaColour& colour : ega_colours)
-            names += fmt::format("{}{}", names.empty() ? "" : ", ", colour.name);
-        return names;
     }
 
     /// Fractint's turtle heads to the right at first, and its colour is the last of sixteen.
@@ -269,8 +251,8 @@ class FractintWriter {
 
 } // namespace
 
-std::optional<Translation> write_fractint_system(const ForeignFile& file, const ForeignModel& model,
-                                                 const FractintSystem& system) {
+Translation write_fractint_system(const ForeignFile& file, const ForeignModel& model,
+                                  const FractintSystem& system) {
     return FractintWriter(file, model, system).write();
 }
 

@@ -1,10 +1,9 @@
-#include "compiler/import/houdini/importer.h"
-
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "compiler/import/foreign_text.h"
+#include "compiler/import/formats.h"
 #include "compiler/import/houdini/fields.h"
 #include "compiler/import/houdini/system.h"
 #include "compiler/support/path_text.h"
@@ -12,8 +11,6 @@
 namespace graftal {
 
 namespace {
-
-constexpr std::size_t most_houdini_bytes = 1'000'000;
 
 /// A model reaches from its premise to the next one; the first has what stands before it, too.
 std::vector<ForeignModel> houdini_models(const ForeignFile& file) {
@@ -40,11 +37,6 @@ bool is_houdini(std::string_view text) {
 }
 
 std::optional<Translation> translate_houdini(const ForeignFile& file, const ForeignModel& model) {
-    if (file.text().size() > most_houdini_bytes) {
-        file.diagnostics.error(
-            file.span(0, 0), fmt::format("a text of Houdini has at most {} characters", most_houdini_bytes));
-        return std::nullopt;
-    }
     std::optional<HoudiniSystem> system = read_houdini(file, model);
     if (!system) return std::nullopt;
     return write_houdini(file, model, std::move(*system));
@@ -53,9 +45,13 @@ std::optional<Translation> translate_houdini(const ForeignFile& file, const Fore
 } // namespace
 
 Importer houdini_importer() {
-    return {"Houdini L-system", {},
-            is_houdini,         "lines 'Premise: ...' and 'Rule 1: symbol=replacement'",
-            houdini_models,     translate_houdini};
+    return {.format = "Houdini L-system",
+            .endings = {},
+            .recognises = is_houdini,
+            .sign = "lines 'Premise: ...' and 'Rule 1: symbol=replacement'",
+            .models = houdini_models,
+            .translation = translate_houdini,
+            .most_bytes = 1'000'000};
 }
 
 } // namespace graftal

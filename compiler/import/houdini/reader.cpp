@@ -132,10 +132,9 @@ class HoudiniReader {
             if (known == values_.end())
                 file_.diagnostics.warning(system().axiom_span,
                                           fmt::format("the text gives no value for '{}': it is 1", name));
-            CpfgAction action;
-            action.name = action.target = name;
-            action.value = shortest(known == values_.end() ? 1 : known->second);
-            system().blocks[CpfgMoment::start].push_back(std::move(action));
+            const double value = known == values_.end() ? 1 : known->second;
+            system().blocks[CpfgMoment::start].push_back(
+                {.name = name, .target = name, .value = shortest(value)});
         }
     }
 
@@ -187,12 +186,8 @@ class HoudiniReader {
     /// `count`: of the names that were made for parameters that the rule has no name for.
     static void fit(CpfgModule& module, std::size_t arity, CpfgProduction& production, int& count) {
         std::vector<std::string>& names = module.parameters;
-        for (; names.size() > arity; names.pop_back()) {
-            CpfgAction action;
-            action.name = action.target = names.back();
-            action.value = "0";
-            production.before.push_back(std::move(action));
-        }
+        for (; names.size() > arity; names.pop_back())
+            production.before.push_back({.name = names.back(), .target = names.back(), .value = "0"});
         while (names.size() < arity)
             names.push_back(fmt::format("rest_{}", ++count));
         module.has_parentheses = arity > 0;

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "compiler/import/cpfg/expression.h"
-#include "compiler/import/cpfg/names.h"
 #include "compiler/import/foreign_text.h"
 
 namespace graftal {
@@ -38,17 +37,10 @@ std::optional<std::vector<Written>> modules_of(std::string_view text) {
         while (i < text.size() && is_gap(text[i]))
             ++i;
         if (i == text.size() || text[i] != '(') continue;
-        const std::size_t begin = ++i;
-        for (int depth = 1; depth > 0; ++i) {
-            if (i == text.size()) return std::nullopt;
-            depth += (text[i] == '(') - (text[i] == ')');
-        }
-        const std::string_view inside = text.substr(begin, i - 1 - begin);
-        for (std::size_t from = 0; from <= inside.size() && !trimmed(inside).empty();) {
-            const std::size_t comma = std::min(find_outside(inside, ",", from), inside.size());
-            module.parameters.push_back(trimmed(inside.substr(from, comma - from)));
-            from = comma + 1;
-        }
+        const std::size_t begin = i + 1;
+        i = end_of_parentheses(text, i);
+        if (i == std::string_view::npos) return std::nullopt;
+        module.parameters = split_outside(text.substr(begin, i - 1 - begin));
     }
     return modules;
 }
@@ -78,10 +70,8 @@ std::string HoudiniRules::expression(std::string_view text, Span span, const std
                 known += text[i++];
             while (i < text.size() && (is_cpfg_name(text[i]) || text[i] == '.'));
         } else if (is_cpfg_name(c)) {
-            const std::size_t begin = i;
-            while (i < text.size() && is_cpfg_name(text[i]))
-                ++i;
-            const std::string name(text.substr(begin, i - begin));
+            const std::string name(cpfg_name_at(text, i));
+            i += name.size();
             const std::size_t next = text.find_first_not_of(' ', i);
             const bool calls = next != std::string_view::npos && text[next] == '(';
             if (calls || names.contains(name)) {
@@ -167,9 +157,7 @@ CpfgString HoudiniRules::formals(std::string_view text, Span span, std::set<std:
         module.symbol = written.symbol;
         for (const std::string_view parameter : written.parameters) {
             std::string name(parameter);
-            const bool is_name = !name.empty() && std::ranges::all_of(name, is_cpfg_name) &&
-                                 !std::isdigit(static_cast<unsigned char>(name[0]));
-            if (!is_name) {
+            if (!is_cpfg_parameter(name)) {
                 name = fmt::format("p{}", names.size() + 1);
                 condition += fmt::format("{}{} == ({})", condition.empty() ? "" : " && ", name,
                                          expression(parameter, span, {}, false));

@@ -21,8 +21,7 @@ struct HoudiniSystem {
 /// The model between its places in the file; nothing after an error.
 std::optional<HoudiniSystem> read_houdini(const ForeignFile& file, const ForeignModel& model);
 
-/// The system as a model of ours; nothing after an error.
-std::optional<Translation> write_houdini(const ForeignFile& file, const ForeignModel& model,
-                                         HoudiniSystem system);
+/// The system as a model of ours; of no use after an error.
+Translation write_houdini(const ForeignFile& file, const ForeignModel& model, HoudiniSystem system);
 
 } // namespace graftal

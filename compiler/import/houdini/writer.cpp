@@ -127,8 +127,7 @@ class HoudiniTurtle {
 
 } // namespace
 
-std::optional<Translation> write_houdini(const ForeignFile& file, const ForeignModel& model,
-                                         HoudiniSystem houdini) {
+Translation write_houdini(const ForeignFile& file, const ForeignModel& model, HoudiniSystem houdini) {
     CpfgDialect dialect;
     HoudiniTurtle turtle(file, houdini, dialect);
     dialect.same = HoudiniTurtle::same;
@@ -141,10 +140,7 @@ std::optional<Translation> write_houdini(const ForeignFile& file, const ForeignM
     view.width_in_pixels = !houdini.thickness;
     const CpfgSource source;
     CpfgNames names(file, source, view, &dialect);
-    const std::size_t errors = file.diagnostics.error_count();
-    Translation out = write_cpfg_system(names, houdini.system, model, "");
-    if (file.diagnostics.error_count() > errors) return std::nullopt;
-    return out;
+    return write_cpfg_system(names, houdini.system, model, "");
 }
 
 } // namespace graftal

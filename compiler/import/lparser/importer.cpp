@@ -1,24 +1,12 @@
-#include "compiler/import/lparser/importer.h"
-
-#include <algorithm>
-
-#include <fmt/format.h>
+#include <optional>
 
 #include "compiler/import/foreign_text.h"
+#include "compiler/import/formats.h"
 #include "compiler/import/lparser/system.h"
-#include "compiler/support/path_text.h"
 
 namespace graftal {
 
 namespace {
-
-constexpr std::size_t most_file_bytes =
-    1'000'000; ///< of a file: its strings have fewer modules than ours may
-
-std::vector<ForeignModel> lparser_models(const ForeignFile& file) {
-    const std::string name(stem_of(file.sources.name(file.file)));
-    return {{name, file.span(0, std::min<std::size_t>(file.text().find('\n'), file.text().size()))}};
-}
 
 /// Lines of depth, angle, thickness and axiom; or a keyword first, and an axiom.
 bool is_lparser(std::string_view text) {
@@ -42,11 +30,6 @@ bool is_lparser(std::string_view text) {
 }
 
 std::optional<Translation> translate_lparser(const ForeignFile& file, const ForeignModel& model) {
-    if (file.text().size() > most_file_bytes) {
-        file.diagnostics.error(file.span(0, 0),
-                               fmt::format("a file of L-Parser has at most {} characters", most_file_bytes));
-        return std::nullopt;
-    }
     const std::optional<LparserSystem> system = read_lparser(file);
     if (!system) return std::nullopt;
     return write_lparser(file, model, *system);
@@ -57,9 +40,13 @@ constexpr std::string_view lparser_endings[] = {"ls"};
 } // namespace
 
 Importer lparser_importer() {
-    return {"L-Parser",     lparser_endings,
-            is_lparser,     "lines of recursion depth, angle, thickness, axiom and rules",
-            lparser_models, translate_lparser};
+    return {.format = "L-Parser",
+            .endings = lparser_endings,
+            .recognises = is_lparser,
+            .sign = "lines of recursion depth, angle, thickness, axiom and rules",
+            .models = one_model,
+            .translation = translate_lparser,
+            .most_bytes = 1'000'000}; // its strings have fewer modules than ours may
 }
 
 } // namespace graftal

@@ -64,8 +64,7 @@ bool is_lparser_keyword(std::string_view word);
 /// The system of a file; nothing after an error.
 std::optional<LparserSystem> read_lparser(const ForeignFile& file);
 
-/// The system as a model of ours; nothing after an error.
-std::optional<Translation> write_lparser(const ForeignFile& file, const ForeignModel& model,
-                                         const LparserSystem& system);
+/// The system as a model of ours; of no use after an error.
+Translation write_lparser(const ForeignFile& file, const ForeignModel& model, const LparserSystem& system);
 
 } // namespace graftal

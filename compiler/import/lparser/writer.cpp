@@ -13,19 +13,23 @@
 
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/lparser/commands.h"
-#include "compiler/support/number.h"
 
 namespace graftal {
 
 namespace {
+
+/// The sixteen colours of a model that has none of its own: red, green and blue of a screen.
+constexpr std::array<double, 48> usual = {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.8,  0.4,  0.4,  0.8, 0.8, 0.4,
+                                          0.4, 0.8, 0.4, 0.4, 0.8, 0.8, 0.4,  0.4,  0.8,  0.8, 0.4, 0.8,
+                                          0.2, 0.5, 0.2, 0.2, 0.5, 0.5, 0.2,  0.2,  0.5,  0.5, 0.2, 0.5,
+                                          0.6, 0.2, 0.2, 0.5, 0.5, 0.5, 0.75, 0.75, 0.75, 1,   1,   1};
 
 class LparserWriter {
   public:
     LparserWriter(const ForeignFile& file, const ForeignModel& model, const LparserSystem& system)
         : file_(file), model_(model), system_(system) {}
 
-    std::optional<Translation> write() {
-        const std::size_t errors = file_.diagnostics.error_count();
+    Translation write() {
         gather();
         check_digits();
         Translation out{"lsys", {}, {}};
@@ -35,14 +39,13 @@ class LparserWriter {
         if (const std::string names = declared(); !names.empty()) out.line("  modules " + names);
         write_settings(out, colours);
         out.line(fmt::format("  axiom {}{}{}{}", system_.switch_yz ? "@F" : "", ";(2)",
-                             text_of(system_.axiom), remark(system_.axiom_comment)),
+                             text_of(system_.axiom), remark_text(system_.axiom_comment)),
                  system_.axiom_span);
         for (const LparserRule& rule : system_.rules)
             write_rule(out, rule);
         comments(out, system_.tail, "  ");
         write_meanings(out);
         out.line("}");
-        if (file_.diagnostics.error_count() > errors) return std::nullopt;
         return out;
     }
 
@@ -102,54 +105,26 @@ class LparserWriter {
 
     bool has_rule(char letter) const { return ruled_.contains(letter); }
 
-    static std::string remark(const std::string& comment) {
-        return comment.empty() ? std::string() : "   # " + comment;
-    }
-
     static void comments(Translation& out, const std::vector<LparserLine>& lines, const char* indent) {
         for (const LparserLine& line : lines)
             out.line(fmt::format("{}# {}", indent, line.comment), line.span);
     }
 
-    /// Colours are those of a screen.
-    static std::string linear(double r, double g, double b) {
-        const auto light = [](double x) {
-            return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
-        };
-        return fmt::format("{}, {}, {}", shortest(light(r)), shortest(light(g)), shortest(light(b)));
-    }
-
     /// Writes the materials; gives their number.
     int write_materials(Translation& out) {
-        constexpr std::array<std::array<double, 3>, 16> usual = {{{0.5, 0.5, 0.5},
-                                                                  {0.5, 0.5, 0.5},
-                                                                  {0.8, 0.4, 0.4},
-                                                                  {0.8, 0.8, 0.4},
-                                                                  {0.4, 0.8, 0.4},
-                                                                  {0.4, 0.8, 0.8},
-                                                                  {0.4, 0.4, 0.8},
-                                                                  {0.8, 0.4, 0.8},
-                                                                  {0.2, 0.5, 0.2},
-                                                                  {0.2, 0.5, 0.5},
-                                                                  {0.2, 0.2, 0.5},
-                                                                  {0.5, 0.2, 0.5},
-                                                                  {0.6, 0.2, 0.2},
-                                                                  {0.5, 0.5, 0.5},
-                                                                  {0.75, 0.75, 0.75},
-                                                                  {1, 1, 1}}};
         std::map<int, const LparserColour*> own;
-        int count = static_cast<int>(usual.size());
+        int count = static_cast<int>(usual.size() / 3);
         for (const LparserColour& colour : system_.colours) {
             own[colour.index] = &colour;
             count = std::max(count, colour.index + 1);
         }
         for (int i = 0; i < count; ++i) {
             const auto known = own.find(i);
-            std::array<double, 3> rgb = i < 16 ? usual[static_cast<std::size_t>(i)] : usual[0];
-            if (known != own.end())
-                for (std::size_t k = 0; k < 3; ++k)
-                    rgb[k] = known->second->rgb[k] / 255.0;
-            out.line(fmt::format("material colour{} {{ color: {} }}", i, linear(rgb[0], rgb[1], rgb[2])),
+            std::array<double, 3> rgb{};
+            for (std::size_t k = 0; k < 3; ++k)
+                rgb[k] = known == own.end() ? usual[i < 16 ? 3 * static_cast<std::size_t>(i) + k : k]
+                                            : known->second->rgb[k] / 255.0;
+            out.line(fmt::format("material colour{} {{ color: {} }}", i, linear_text(rgb)),
                      known == own.end() ? Span() : known->second->span);
         }
         return count;
@@ -162,7 +137,7 @@ class LparserWriter {
         out.line("  colors " + names);
         const auto number = [&](const char* statement, const LparserNumber& of, double value,
                                 const char* more = "") {
-            out.line(fmt::format("  {} {}{}{}", statement, value, more, remark(of.comment)), of.span);
+            out.line(fmt::format("  {} {}{}{}", statement, value, more, remark_text(of.comment)), of.span);
         };
         if (!(system_.recursion.value >= 0 && system_.recursion.value == std::floor(system_.recursion.value)))
             file_.diagnostics.error(system_.recursion.span,
@@ -187,7 +162,7 @@ class LparserWriter {
         }
         const std::string name = name_of(rule.letter);
         const std::string successor = text_of(rule.successor);
-        const std::string said = remark(rule.comment);
+        const std::string said = remark_text(rule.comment);
         const bool plain = plain_.contains(rule.letter) || !numbered_.contains(rule.letter);
         if (plain)
             out.line(fmt::format("  {} -> {}{}", name, successor.empty() ? "*" : successor, said), rule.span);
@@ -325,8 +300,7 @@ class LparserWriter {
 
 } // namespace
 
-std::optional<Translation> write_lparser(const ForeignFile& file, const ForeignModel& model,
-                                         const LparserSystem& system) {
+Translation write_lparser(const ForeignFile& file, const ForeignModel& model, const LparserSystem& system) {
     return LparserWriter(file, model, system).write();
 }
 

@@ -7,7 +7,6 @@
 
 #include "compiler/import/cpfg/block.h"
 #include "compiler/import/cpfg/expression.h"
-#include "compiler/import/cpfg/names.h"
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/lpy/python.h"
 #include "compiler/import/lpy/ways.h"
@@ -213,10 +212,9 @@ class LpyExpression {
     }
 
     std::string word() {
-        const std::size_t begin = at_;
-        while (at_ < text_.size() && is_cpfg_name(text_[at_]))
-            ++at_;
-        return std::string(text_.substr(begin, at_ - begin));
+        std::string name(cpfg_name_at(text_, at_));
+        at_ += name.size();
+        return name;
     }
 
     std::string value_of(const std::string& name) {
@@ -359,14 +357,10 @@ void LpyPython::add_function(const LpyLine& line) {
     const std::size_t colon = text.find(':', open + 1 + length);
     if (colon == std::string_view::npos) return;
     Function function{{}, line.below, line.span};
-    const std::string_view inside = text.substr(open + 1, length);
-    for (std::size_t from = 0; from <= inside.size() && !trimmed(inside).empty();) {
-        const std::size_t comma = std::min(find_outside(inside, ",", from), inside.size());
-        const std::string_view one = inside.substr(from, comma - from);
+    for (const std::string_view one : split_outside(text.substr(open + 1, length))) {
         const std::size_t equal = std::min(one.find('='), one.size());
         function.parameters.emplace_back(trimmed(one.substr(0, equal)),
                                          trimmed(one.substr(std::min(equal + 1, one.size()))));
-        from = comma + 1;
     }
     if (const std::string_view body = trimmed(text.substr(colon + 1)); !body.empty())
         function.lines = {LpyLine{std::string(body), "", line.span, line.indent + 1, {}}};

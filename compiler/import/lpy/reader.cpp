@@ -11,7 +11,6 @@
 
 #include "compiler/import/cpfg/block.h"
 #include "compiler/import/cpfg/expression.h"
-#include "compiler/import/cpfg/names.h"
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/lpy/lines.h"
 #include "compiler/import/lpy/python.h"
@@ -34,13 +33,6 @@ std::optional<std::string_view> behind(std::string_view text, std::string_view w
     at = std::min(text.find_first_not_of(' ', at), text.size());
     if (at == text.size() || text[at] != ':') return std::nullopt;
     return trimmed(text.substr(at + 1));
-}
-
-std::string_view word_of(std::string_view text) {
-    std::size_t end = 0;
-    while (end < text.size() && is_cpfg_name(text[end]))
-        ++end;
-    return text.substr(0, end);
 }
 
 bool is_python(std::string_view word) {
@@ -105,7 +97,7 @@ class LpyReader {
         const std::string_view line = text.substr(begin, text.find('\n', begin) - begin);
         const Span span = file_.span(begin, begin + line.size());
         for (std::size_t at = line.find("('"); at != std::string_view::npos; at = line.find("('", at)) {
-            const std::string name(word_of(line.substr(at + 2)));
+            const std::string name(cpfg_name_at(line, at + 2));
             at = std::min(line.find(',', at), line.size() - 1) + 1;
             std::string_view value = trimmed(line.substr(at));
             if (value.starts_with('\''))
@@ -134,7 +126,7 @@ class LpyReader {
     }
 
     static bool is_rule(std::string_view text) {
-        if (is_python(word_of(text))) return false;
+        if (is_python(cpfg_name_at(text))) return false;
         return text.find("-->") != std::string_view::npos ||
                (find_outside(text, ":") != std::string_view::npos && !assignments_of(text));
     }
@@ -166,7 +158,7 @@ class LpyReader {
                 const std::size_t stop =
                     several ? std::min(find_outside(values, ","), values.size()) : values.size();
                 const std::string_view name = trimmed(names.substr(0, comma));
-                if (name.empty() || word_of(name) != name) return std::nullopt;
+                if (name.empty() || cpfg_name_at(name) != name) return std::nullopt;
                 all.emplace_back(name, trimmed(values.substr(0, stop)));
                 if (comma == names.size()) break;
                 names.remove_prefix(comma + 1);
@@ -178,7 +170,7 @@ class LpyReader {
 
     /// First reading: names, functions and modules, which rules before them may use.
     void read_python(const LpyLine& line) {
-        const std::string_view text = line.text, word = word_of(text);
+        const std::string_view text = line.text, word = cpfg_name_at(text);
         if (turns(line) || text.empty()) return;
         if (text.starts_with("module ")) return strings_.declare(text.substr(7));
         if (word == "import" || word == "from") return python_.add_import(text);
@@ -207,7 +199,7 @@ class LpyReader {
     /// `name = lambda x: expression` is a function.
     void name_value(const std::string& name, std::string_view value, const LpyLine& line) {
         const std::size_t colon = std::min(find_outside(value, ":"), value.size());
-        if (word_of(value) != "lambda" || colon == value.size())
+        if (cpfg_name_at(value) != "lambda" || colon == value.size())
             return python_.name_value(name, value, line.span);
         LpyLine function = line;
         function.text = fmt::format("def {}({}): return {}", name, trimmed(value.substr(6, colon - 6)),
@@ -221,10 +213,10 @@ class LpyReader {
         if (const std::optional<Assignments> all = assignments_of(line.text))
             for (const auto& [name, value] : *all)
                 python_.name_unknown(name, line.span);
-        const std::string_view text = line.text, word = word_of(text),
+        const std::string_view text = line.text, word = cpfg_name_at(text),
                                rest = trimmed(text.substr(word.size()));
         if (rest.size() > 1 && rest[1] == '=') python_.name_unknown(std::string(word), line.span); // x += 1
-        if (word == "class") python_.name_unknown(std::string(word_of(rest)), line.span);
+        if (word == "class") python_.name_unknown(std::string(cpfg_name_at(rest)), line.span);
         for (const LpyLine& below : line.below)
             forget(below);
     }
@@ -234,14 +226,10 @@ class LpyReader {
         const std::string_view text = line.text;
         const std::size_t open = text.find('(');
         if (open == std::string_view::npos || !text.ends_with(')')) return;
-        std::string_view inside = text.substr(open + 1, text.size() - open - 2);
-        while (!trimmed(inside).empty()) {
-            const std::size_t comma = std::min(find_outside(inside, ","), inside.size());
-            if (const std::optional<Assignments> all = assignments_of(trimmed(inside.substr(0, comma))))
+        for (const std::string_view one : split_outside(text.substr(open + 1, text.size() - open - 2)))
+            if (const std::optional<Assignments> all = assignments_of(one))
                 for (const auto& [name, value] : *all)
                     python_.name_value(name, value, line.span);
-            inside.remove_prefix(std::min(comma + 1, inside.size()));
-        }
     }
 
     static std::optional<CpfgMoment> moment_of(std::string_view text) {
@@ -249,7 +237,7 @@ class LpyReader {
                                                                      {"StartEach", CpfgMoment::start_each},
                                                                      {"EndEach", CpfgMoment::end_each},
                                                                      {"End", CpfgMoment::end}};
-        const std::string_view name = text.starts_with("def ") ? word_of(trimmed(text.substr(4))) : "";
+        const std::string_view name = text.starts_with("def ") ? cpfg_name_at(trimmed(text.substr(4))) : "";
         for (const auto& [word, moment] : words)
             if (name == word) return moment;
         return std::nullopt;
@@ -274,7 +262,7 @@ class LpyReader {
                 python_.name_unknown(name, line.span);
         file_.diagnostics.warning(line.span, fmt::format("'{}' is Python that has no translation, and is "
                                                          "left out",
-                                                         word_of(trimmed(line.text.substr(4)))));
+                                                         cpfg_name_at(trimmed(line.text.substr(4)))));
     }
 
     std::optional<CpfgBlock> block_of(const std::vector<LpyLine>& lines, std::set<std::string>& globals,
@@ -282,7 +270,7 @@ class LpyReader {
         CpfgBlock block;
         for (std::size_t i = 0; i < lines.size(); ++i) {
             const LpyLine& line = lines[i];
-            const std::string_view text = line.text, word = word_of(text);
+            const std::string_view text = line.text, word = cpfg_name_at(text);
             if (text.starts_with('"') || text.starts_with('\'') || word == "pass" || word == "print")
                 continue;
             if (word == "global") {
@@ -301,9 +289,7 @@ class LpyReader {
                     for (const auto& [local, written] : values)
                         if (names_any(written, [&](std::string_view read) { return read == global; }))
                             return std::nullopt;
-                    CpfgAction& action = block.emplace_back();
-                    action.name = action.target = global;
-                    action.value = std::move(own);
+                    block.push_back({.name = global, .target = global, .value = std::move(own)});
                 } else {
                     values.insert_or_assign(name, "(" + own + ")");
                 }
@@ -317,9 +303,7 @@ class LpyReader {
     void name_numbers() {
         CpfgBlock& start = system_.blocks[CpfgMoment::start];
         for (const LpyPython::Number& number : python_.numbers()) {
-            CpfgAction& action = start.emplace_back();
-            action.name = action.target = number.name;
-            action.value = number.value;
+            start.push_back({.name = number.name, .target = number.name, .value = number.value});
             system_.block_spans.try_emplace(CpfgMoment::start, number.span);
         }
         for (const Moment& moment : moments_) {

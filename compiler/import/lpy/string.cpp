@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "compiler/import/cpfg/expression.h"
-#include "compiler/import/cpfg/names.h"
 #include "compiler/import/foreign_text.h"
 
 namespace graftal {
@@ -30,46 +29,23 @@ constexpr std::pair<std::string_view, std::string_view> turtle_names[] = {
     {"surface", "~"}};
 
 /// Modules of the turtle that have no short symbol.
-constexpr std::string_view long_names[] = {"nF",
-                                           "Sweep",
-                                           "Frame",
-                                           "Arrow",
-                                           "SetContour",
-                                           "SectionResolution",
-                                           "SetGuide",
-                                           "EndGuide",
-                                           "PositionOnGuide",
-                                           "InterpolateColors",
-                                           "LineTo",
-                                           "OLineTo",
-                                           "LineRel",
-                                           "OLineRel",
-                                           "MoveRel",
-                                           "Pinpoint",
-                                           "PinpointRel",
-                                           "EulerAngles",
-                                           "LeftReflection",
-                                           "UpReflection",
-                                           "HeadingReflection",
-                                           "TextureBaseColor",
-                                           "InterpolateTextureBaseColors",
-                                           "TextureScale",
-                                           "TextureUScale",
-                                           "TextureVScale",
-                                           "TextureTranslation",
-                                           "TextureRotation",
-                                           "TextureTransformation"};
+constexpr std::string_view long_names =
+    "nF Sweep Frame Arrow SetContour SectionResolution SetGuide EndGuide PositionOnGuide InterpolateColors "
+    "LineTo OLineTo LineRel OLineRel MoveRel Pinpoint PinpointRel EulerAngles LeftReflection UpReflection "
+    "HeadingReflection TextureBaseColor InterpolateTextureBaseColors TextureScale TextureUScale "
+    "TextureVScale TextureTranslation TextureRotation TextureTransformation";
 
-constexpr std::string_view directives[] = {"@2D", "@3D", "@Di", "@Dd", "@Gc", "@Gs", "@Ge",
-                                           "@Ts", "@Tp", "@D",  "@O",  "@o",  "@c",  "@B",
-                                           "@b",  "@M",  "@R",  "@v",  "@h",  "@L",  "@g"};
+constexpr std::string_view directives =
+    "@2D @3D @Di @Dd @Gc @Gs @Ge @Ts @Tp @D @O @o @c @B @b @M @R @v @h @L @g";
 
-/// The longest of the names that the text goes on with at `at`; "" for none.
-template<typename Names>
-std::string_view longest_at(const Names& names, std::string_view text, std::size_t at) {
+/// The longest of these words that the text goes on with at `at`; "" for none.
+std::string_view longest_at(std::string_view words, std::string_view text, std::size_t at) {
     std::string_view found;
-    for (const std::string_view name : names)
-        if (name.size() > found.size() && text.substr(at).starts_with(name)) found = name;
+    for (std::size_t begin = 0, end = 0; begin < words.size(); begin = end + 1) {
+        end = std::min(words.find(' ', begin), words.size());
+        const std::string_view word = words.substr(begin, end - begin);
+        if (word.size() > found.size() && text.substr(at).starts_with(word)) found = word;
+    }
     return found;
 }
 
@@ -81,27 +57,24 @@ bool takes_objects(std::string_view symbol) {
     return std::ranges::find(all, symbol) != std::end(all) || symbol.starts_with("Texture");
 }
 
+/// Queries of L-Py have the axes x, y, z, which are our z, x, y.
+void finish(CpfgModule& module) {
+    if (module.symbol[0] == '?' && module.parameters.size() == 3)
+        std::ranges::rotate(module.parameters, module.parameters.begin() + 1);
+    module.has_parentheses = !module.parameters.empty();
+}
+
 } // namespace
 
 void LpyStrings::declare(std::string_view text) {
-    text = text.substr(0, find_outside(text, ":"));
-    while (!trimmed(text).empty()) {
-        const std::size_t comma = std::min(find_outside(text, ","), text.size());
-        const std::string_view one = trimmed(text.substr(0, comma));
-        std::size_t end = 0;
-        while (end < one.size() && is_cpfg_name(one[end]))
-            ++end;
-        if (end > 0) declared_.emplace(one.substr(0, end));
-        text.remove_prefix(std::min(comma + 1, text.size()));
-    }
+    for (const std::string_view one : split_outside(text.substr(0, find_outside(text, ":"))))
+        if (const std::string_view name = cpfg_name_at(one); !name.empty()) declared_.emplace(name);
 }
 
 std::string LpyStrings::symbol_at(std::string_view text, std::size_t& at) const {
     std::string_view known;
     // Names are the first letters of a declared word; only words that are long are looked up.
-    std::size_t end = at;
-    while (end < text.size() && is_cpfg_name(text[end]))
-        ++end;
+    const std::size_t end = at + cpfg_name_at(text, at).size();
     for (std::size_t stop = std::min(end, at + 40); known.empty() && stop > at + 1; --stop)
         if (declared_.contains(text.substr(at, stop - at))) known = text.substr(at, stop - at);
     if (!known.empty()) {
@@ -148,25 +121,12 @@ std::vector<LpyStrings::Written> LpyStrings::modules_of(std::string_view text, S
         module.symbol = symbol_at(text, i);
         const std::size_t open = std::min(text.find_first_not_of(" ", i), text.size());
         if (open == text.size() || text[open] != '(') continue;
-        const std::size_t begin = i = open + 1;
-        for (int depth = 1; depth > 0; ++i) {
-            if (i == text.size()) {
-                complain_(span, "a '(' is not closed");
-                return modules;
-            }
-            depth += (text[i] == '(') - (text[i] == ')');
+        i = end_of_parentheses(text, open);
+        if (i == std::string_view::npos) {
+            complain_(span, "a '(' is not closed");
+            return modules;
         }
-        const std::string_view inside = text.substr(begin, i - 1 - begin);
-        int square = 0, round = 0;
-        std::size_t from = 0;
-        for (std::size_t k = 0; k <= inside.size() && !trimmed(inside).empty(); ++k) {
-            const char c = k < inside.size() ? inside[k] : ',';
-            square += (c == '[') - (c == ']');
-            round += (c == '(') - (c == ')');
-            if (k < inside.size() && (c != ',' || square > 0 || round > 0)) continue;
-            module.parameters.push_back(trimmed(inside.substr(from, k - from)));
-            from = k + 1;
-        }
+        module.parameters = split_outside(text.substr(open + 1, i - open - 2), true);
     }
     return modules;
 }
@@ -191,10 +151,7 @@ CpfgString LpyStrings::read(std::string_view text, Span span, const LpyValues& v
         const std::size_t most = written.symbol == "Sweep" ? 5 : written.symbol == "nF" ? 3 : 100;
         for (std::size_t i = first; i < std::min(written.parameters.size(), most) && !objects; ++i)
             module.parameters.push_back(python_.expression(written.parameters[i], span, values));
-        // Its axes x, y, z are our z, x, y.
-        if (module.symbol[0] == '?' && module.parameters.size() == 3)
-            std::ranges::rotate(module.parameters, module.parameters.begin() + 1);
-        module.has_parentheses = !module.parameters.empty();
+        finish(module);
     }
     return string;
 }
@@ -209,8 +166,7 @@ CpfgString LpyStrings::formals(std::string_view text, Span span, LpyValues& valu
         CpfgModule& module = string.emplace_back();
         module.symbol = written.symbol;
         for (const std::string_view parameter : written.parameters) {
-            const bool is_name = !parameter.empty() && std::ranges::all_of(parameter, is_cpfg_name) &&
-                                 !std::isdigit(static_cast<unsigned char>(parameter[0]));
+            const bool is_name = is_cpfg_parameter(parameter);
             std::string own = is_name ? std::string(parameter) : fmt::format("p{}", values.size() + 1);
             if (python_.is_global(own)) own += "_own";
             if (is_name && values.contains(parameter)) {
@@ -226,9 +182,7 @@ CpfgString LpyStrings::formals(std::string_view text, Span span, LpyValues& valu
             values[is_name ? std::string(parameter) : own] = own;
             module.parameters.push_back(std::move(own));
         }
-        if (module.symbol[0] == '?' && module.parameters.size() == 3)
-            std::ranges::rotate(module.parameters, module.parameters.begin() + 1);
-        module.has_parentheses = !module.parameters.empty();
+        finish(module);
     }
     return string;
 }

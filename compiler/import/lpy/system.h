@@ -16,7 +16,7 @@ std::optional<CpfgSystem> read_lpy(const ForeignFile& file);
 /// the file.
 std::vector<Rgb> lpy_colours(std::string_view text);
 
-/// The system as a model of ours; nothing after an error.
-std::optional<Translation> write_lpy(const ForeignFile& file, const ForeignModel& model, CpfgSystem system);
+/// The system as a model of ours; of no use after an error.
+Translation write_lpy(const ForeignFile& file, const ForeignModel& model, CpfgSystem system);
 
 } // namespace graftal

@@ -8,7 +8,6 @@
 
 #include "compiler/import/cpfg/block.h"
 #include "compiler/import/cpfg/expression.h"
-#include "compiler/import/cpfg/names.h"
 #include "compiler/import/foreign_text.h"
 
 namespace graftal {
@@ -18,13 +17,6 @@ namespace {
 constexpr std::size_t most_ways = 64;   ///< through one rule
 constexpr int most_decisions = 200;     ///< on one way
 constexpr int most_statements = 20'000; ///< statements on all ways
-
-std::string_view first_word(std::string_view text) {
-    std::size_t end = 0;
-    while (end < text.size() && is_cpfg_name(text[end]))
-        ++end;
-    return text.substr(0, end);
-}
 
 /// Where the colon stands that ends `if condition:`.
 std::size_t colon_of(std::string_view text) {
@@ -59,7 +51,7 @@ struct Assignment {
 };
 
 std::optional<Assignment> assignment_of(std::string_view text) {
-    const std::string_view name = first_word(text);
+    const std::string_view name = cpfg_name_at(text);
     std::string_view rest = trimmed(text.substr(name.size()));
     if (name.empty()) return std::nullopt;
     std::string sign;
@@ -137,7 +129,7 @@ void LpyWays::follow(const Rest* rest, State state) {
         }
         const LpyLine& line = (*rest->lines)[rest->at];
         if (++steps_ > most_statements) fail(line.span, "a rule decides between too many cases");
-        const std::string_view text = line.text, word = first_word(text);
+        const std::string_view text = line.text, word = cpfg_name_at(text);
         if (word == "if") {
             const Rest now = *rest;
             decide(now, std::move(state));
@@ -173,13 +165,13 @@ void LpyWays::decide(const Rest& rest, State state) {
     const std::vector<LpyLine>& lines = *rest.lines;
     std::size_t after = rest.at + 1;
     while (after < lines.size() &&
-           (first_word(lines[after].text) == "elif" || first_word(lines[after].text) == "else"))
+           (cpfg_name_at(lines[after].text) == "elif" || cpfg_name_at(lines[after].text) == "else"))
         ++after;
     const Rest behind{rest.lines, after, rest.next};
     bool open = true; // no `else` so far
     for (std::size_t at = rest.at; good_ && open && at < after; ++at) {
         const LpyLine& line = lines[at];
-        const std::string_view word = first_word(line.text);
+        const std::string_view word = cpfg_name_at(line.text);
         const std::vector<LpyLine> branch = branch_of(line);
         const Rest inside{&branch, 0, &behind};
         if (word == "else") {
@@ -236,7 +228,7 @@ std::string LpyWays::value(std::string_view text, Span span, State& state) {
             ++i;
             continue;
         }
-        const std::string_view name = first_word(text.substr(i));
+        const std::string_view name = cpfg_name_at(text, i);
         i += name.size();
         if (state.draws.contains(name)) fail(span, "a number of chance is used in several ways");
         const auto known = state.path.values.find(name);

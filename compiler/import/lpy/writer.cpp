@@ -143,7 +143,7 @@ class LpyTurtle {
 
 } // namespace
 
-std::optional<Translation> write_lpy(const ForeignFile& file, const ForeignModel& model, CpfgSystem system) {
+Translation write_lpy(const ForeignFile& file, const ForeignModel& model, CpfgSystem system) {
     CpfgDialect dialect;
     LpyTurtle turtle(file, dialect);
     dialect.same = LpyTurtle::same;
@@ -165,10 +165,7 @@ std::optional<Translation> write_lpy(const ForeignFile& file, const ForeignModel
     view.colour = turtle_colour;
     const CpfgSource source;
     CpfgNames own(file, source, view, &dialect);
-    const std::size_t errors = file.diagnostics.error_count();
-    Translation out = write_cpfg_system(own, std::move(system), model, "");
-    if (file.diagnostics.error_count() > errors) return std::nullopt;
-    return out;
+    return write_cpfg_system(own, std::move(system), model, "");
 }
 
 } // namespace graftal

@@ -1,16 +1,34 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include <glm/ext/quaternion_double.hpp>
 
-#include "compiler/lsys/turtle/frame.h"
+#include "compiler/lsys/parse/turtle_command.h"
 #include "compiler/support/affine.h"
 #include "compiler/support/id_table.h"
 
 namespace graftal {
+
+/// A direction that segments bend towards, the more the larger the elasticity.
+struct Tropism {
+    Vec3 direction{0.0}; ///< unit vector
+    double elasticity = 0;
+};
+
+/// The world as seen from a frame.
+struct TurtleFrame {
+    Mat3 axes{1.0};   ///< of the world, by columns; a mirror image if the turtle is one
+    Vec3 origin{0.0}; ///< of the world
+    double unit = 1;  ///< how long a length of 1 of the world is
+    std::array<Tropism, most_other_tropisms> tropisms; ///< all beside the first
+};
+
+/// The frame as seen by a turtle that stands here, in a frame where all is `scale` times as long.
+TurtleFrame seen_from(const TurtleFrame& frame, const Affine& start_from_turtle, double scale);
 
 using Quat = glm::dquat;
 

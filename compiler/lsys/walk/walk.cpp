@@ -12,6 +12,11 @@ namespace {
 /// Most interpretations that may follow each other.
 constexpr std::size_t most_walk_levels = 1000;
 
+/// Queries are answered between the steps, and not by the turtle.
+bool is_query(TurtleCommand command) {
+    return command >= TurtleCommand::ask_place && command <= TurtleCommand::ask_environment;
+}
+
 } // namespace
 
 TurtleContext turtle_context(const LsysGrammar& grammar, TurtleBodies& bodies, Diagnostics& diagnostics) {

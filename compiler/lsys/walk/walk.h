@@ -16,11 +16,6 @@ TurtleContext turtle_context(const LsysGrammar& grammar, TurtleBodies& bodies, D
 /// The state of the turtle at the start, except for its width.
 TurtleState turtle_start(const LsysGrammar& grammar);
 
-/// Queries are answered between the steps, and not by the turtle.
-inline bool is_query(TurtleCommand command) {
-    return command >= TurtleCommand::ask_place && command <= TurtleCommand::ask_environment;
-}
-
 /// Follows a word as it is interpreted, with a turtle that draws nothing.
 class LsysWalk {
   public:

@@ -511,7 +511,7 @@ class GltfWriter {
     std::map<std::pair<std::int64_t, bool>, int> material_of_;
 };
 
-Status write_gltf_file(const ExportJob& job, ExportReport& report, bool binary) {
+template<bool binary> Status write_gltf(const ExportJob& job, ExportReport& report) {
     if (refuse_range(job, job.options.unit_mm.value_or(1000) / 1000)) return {};
     constexpr std::size_t most_looks = 1'000'000;
     std::optional<UnfoldedScene> scene = resolve_looks(job.scene, {most_looks}, job.model, job.diagnostics);
@@ -533,38 +533,25 @@ Status write_gltf_file(const ExportJob& job, ExportReport& report, bool binary) 
     return file.pending().commit();
 }
 
-Status write_gltf(const ExportJob& job, ExportReport& report) {
-    return write_gltf_file(job, report, false);
-}
-
-Status write_glb(const ExportJob& job, ExportReport& report) {
-    return write_gltf_file(job, report, true);
+constexpr ExportFormat gltf_row(std::string_view extension, std::string_view name, std::string_view summary,
+                                decltype(ExportFormat::write) write) {
+    return {.extension = extension,
+            .name = name,
+            .summary = summary,
+            .meshes = SceneMeshes::by_size,
+            .has_unit = true,
+            .has_instancing = true,
+            .has_nodes = true,
+            .has_parts = true,
+            .write = write};
 }
 
 } // namespace
 
-const ExportFormat gltf_format = {
-    .extension = ".gltf",
-    .name = "glTF 2.0",
-    .summary = "shared meshes and nodes, for web pages and Blender; one text file",
-    .meshes = SceneMeshes::by_size,
-    .has_unit = true,
-    .has_instancing = true,
-    .has_nodes = true,
-    .has_parts = true,
-    .write = write_gltf,
-};
-
-const ExportFormat glb_format = {
-    .extension = ".glb",
-    .name = "glTF 2.0 (binary)",
-    .summary = "the same, in one binary file",
-    .meshes = SceneMeshes::by_size,
-    .has_unit = true,
-    .has_instancing = true,
-    .has_nodes = true,
-    .has_parts = true,
-    .write = write_glb,
-};
+const ExportFormat gltf_format =
+    gltf_row(".gltf", "glTF 2.0", "shared meshes and nodes, for web pages and Blender; one text file",
+             write_gltf<false>);
+const ExportFormat glb_format =
+    gltf_row(".glb", "glTF 2.0 (binary)", "the same, in one binary file", write_gltf<true>);
 
 } // namespace graftal

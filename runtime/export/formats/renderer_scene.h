@@ -15,11 +15,6 @@ struct RendererLook {
     bool pictured = false;
 };
 
-struct RendererMesh {
-    std::string name;
-    SceneId node = 0;
-};
-
 class RendererScene {
   public:
     /// Nothing, after an error, for what is too large. `bytes_of_triangle`, `bytes_of_place`: in the file.

@@ -57,17 +57,15 @@ std::function<void(double)> telling(const BlockTask& task, const char* stage) {
     return [&task, stage](double share) { task.on_progress(stage, share); };
 }
 
-/// W of the plane itself, against the plane.
+/// W of the plane itself, against the plane. The largest distance is that of both with the margin, on which W
+/// works: the collage theorem asks for it.
 LevelError collage_error(const LevelPlane& plane, const CodedPlane& coded, const Workers& workers,
                          const CancelFlag& cancel) {
     const PlaneIteration iteration(coded, plane.width, plane.height, plane.width, plane.height);
-    LevelPlane from = iteration.grey(), to = from;
-    for (int y = 0; y < from.height; ++y)
-        for (int x = 0; x < from.width; ++x)
-            from.levels[from.index(x, y)] =
-                plane.at(std::min(x, plane.width - 1), std::min(y, plane.height - 1));
-    iteration.apply(from, to, workers, cancel);
-    return error_of(plane, to);
+    LevelPlane to = iteration.grey();
+    const LevelPlane from = with_margin(plane, to.width, to.height);
+    const float most = iteration.apply(from, to, workers, cancel);
+    return {error_of(plane, to).rms, most};
 }
 
 void measure(const LevelPlane& luma, const BlockPicture& picture, const Workers& workers,

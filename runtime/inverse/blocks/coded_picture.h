@@ -29,7 +29,7 @@ struct CodedPicture {
     std::size_t flat_blocks = 0;
     int pool_bits = 0;
     double contraction = 0;                   ///< s
-    double collage_rms = 0, collage_most = 0; ///< of the picture from W of it
+    double collage_rms = 0, collage_most = 0; ///< of the picture from W of it; the most in the margin, too
     double rms = 0, most = 0;                 ///< of the picture from the attractor
     double bound = 0;                         ///< of `most`, by the collage theorem
     double seconds = 0;                       ///< of counted work

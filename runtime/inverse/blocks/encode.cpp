@@ -42,16 +42,6 @@ struct BlockSums {
     double levels = 0, squares = 0;
 };
 
-/// A plane with its margin, which repeats the border.
-LevelPlane with_margin(const LevelPlane& plane, const PlaneGrid& grid) {
-    LevelPlane padded(grid.padded_width(), grid.padded_height());
-    for (int y = 0; y < padded.height; ++y)
-        for (int x = 0; x < padded.width; ++x)
-            padded.levels[padded.index(x, y)] =
-                plane.at(std::min(x, plane.width - 1), std::min(y, plane.height - 1));
-    return padded;
-}
-
 /// The mean of each pixel and its neighbours to the right and below.
 LevelPlane averages(const LevelPlane& plane) {
     LevelPlane means(std::max(plane.width - 1, 0), std::max(plane.height - 1, 0));
@@ -216,8 +206,8 @@ struct BlockLayer {
 class PlaneSearch {
   public:
     PlaneSearch(const LevelPlane& plane, const PlaneGrid& grid, int bits, double lambda)
-        : grid_(grid), bits_(bits), lambda_(lambda), plane_(with_margin(plane, grid)),
-          means_(averages(plane_)) {
+        : grid_(grid), bits_(bits), lambda_(lambda),
+          plane_(with_margin(plane, grid.padded_width(), grid.padded_height())), means_(averages(plane_)) {
         for (int side = least_side; side <= largest_side; side *= 2) {
             const int columns = plane_.width / side, rows = plane_.height / side;
             layers_.push_back({side, columns, rows, DomainTable(means_, grid, side, bits), {}});

@@ -36,6 +36,15 @@ void average(LevelPlane& sums, int width, int height) {
 
 } // namespace
 
+LevelPlane with_margin(const LevelPlane& plane, int width, int height) {
+    LevelPlane padded(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            padded.levels[padded.index(x, y)] =
+                plane.at(std::min(x, plane.width - 1), std::min(y, plane.height - 1));
+    return padded;
+}
+
 std::string PlanesSink::begin(int width, int height, int channels) {
     const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
     if (std::max(width, height) > most_picture_side) {

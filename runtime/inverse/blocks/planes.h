@@ -24,6 +24,9 @@ struct LevelPlane {
     float at(int x, int y) const { return levels[index(x, y)]; }
 };
 
+/// A plane with a margin to the right and below, which repeats the border.
+LevelPlane with_margin(const LevelPlane& plane, int width, int height);
+
 /// A picture by its planes: grey, or luma and two chromas as in JPEG (ITU-R BT.601); then alpha, if any.
 struct PicturePlanes {
     int width = 0, height = 0;

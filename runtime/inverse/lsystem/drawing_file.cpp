@@ -7,6 +7,7 @@
 
 #include "compiler/lower/plant.h"
 #include "compiler/support/number.h"
+#include "compiler/support/text_encoding.h"
 #include "runtime/render/picture_session.h"
 #include "runtime/system/file.h"
 
@@ -17,32 +18,41 @@ namespace {
 constexpr std::size_t most_drawing_bytes = 256u << 20;
 constexpr std::size_t most_listed_strokes = 1'000'000;
 
-/// The numbers of a line of a list; nothing where a word is none.
-std::optional<std::vector<double>> numbers_of(std::string_view line) {
-    constexpr std::string_view separators = " \t\r,;";
+/// The words of a line of a list.
+struct ListedLine {
     std::vector<double> numbers;
+    bool has_names = false; ///< words that are no numbers
+};
+
+ListedLine read_line(std::string_view line) {
+    constexpr std::string_view separators = " \t,;";
+    ListedLine read;
     line = line.substr(0, line.find('#'));
     for (std::size_t at = line.find_first_not_of(separators); at != std::string_view::npos;) {
         const std::size_t end = std::min(line.find_first_of(separators, at), line.size());
-        const std::optional<double> number = parse_number(line.substr(at, end - at));
-        if (!number) return std::nullopt;
-        numbers.push_back(*number);
+        if (const std::optional<double> number = parse_number(line.substr(at, end - at)))
+            read.numbers.push_back(*number);
+        else
+            read.has_names = true;
         at = line.find_first_not_of(separators, end);
     }
-    return numbers;
+    return read;
 }
 
 std::optional<Strokes> listed_strokes(std::string_view text, std::string& problem) {
     Strokes strokes;
     std::size_t number = 0;
+    bool may_name_columns = true;
     while (!text.empty()) {
         const std::string_view line = text.substr(0, text.find('\n'));
         text.remove_prefix(std::min(line.size() + 1, text.size()));
         ++number;
-        const std::optional<std::vector<double>> values = numbers_of(line);
-        if (!values && number == 1) continue; // names of columns
-        if (values && values->empty()) continue;
-        if (!values || values->size() != 4) {
+        const auto [values, has_names] = read_line(line);
+        if (values.empty() && !has_names) continue;
+        const bool names_columns = may_name_columns && values.empty();
+        may_name_columns = false;
+        if (names_columns) continue;
+        if (has_names || values.size() != 4) {
             problem = fmt::format("line {} has no four numbers x1, y1, x2, y2", number);
             return std::nullopt;
         }
@@ -50,7 +60,7 @@ std::optional<Strokes> listed_strokes(std::string_view text, std::string& proble
             problem = fmt::format("it has more than {} lines", most_listed_strokes);
             return std::nullopt;
         }
-        strokes.push_back({{(*values)[0], (*values)[1]}, {(*values)[2], (*values)[3]}});
+        strokes.push_back({{values[0], values[1]}, {values[2], values[3]}});
     }
     return strokes;
 }
@@ -91,7 +101,8 @@ std::optional<Strokes> read_drawing(const std::string& path, const StageOptions&
     compilation.status = read_text(path, text, most_drawing_bytes);
     if (!compilation.status.ok()) return std::nullopt;
     std::optional<Strokes> strokes =
-        path.ends_with(".svg") ? svg_strokes(text, problem) : listed_strokes(text, problem);
+        path.ends_with(".svg") ? svg_strokes(text, problem)
+                               : listed_strokes(decoded_text(std::move(text), OtherBytes::kept), problem);
     if (!strokes)
         compilation.diagnostics.error({}, fmt::format("the drawing '{}' cannot be read: {}", path, problem));
     return strokes;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <complex>
 #include <filesystem>
-#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -12,6 +11,7 @@
 #include "compiler/support/printable.h"
 #include "runtime/inverse/lsystem/drawing_file.h"
 #include "runtime/inverse/lsystem/grammar_search.h"
+#include "runtime/inverse/lsystem/place_grid.h"
 
 namespace graftal {
 
@@ -102,37 +102,25 @@ class GrammarWriter {
 /// Looks up the places of a graph.
 class PlaceFinder {
   public:
-    explicit PlaceFinder(const StrokeGraph& graph) : graph_(graph) {
+    explicit PlaceFinder(const StrokeGraph& graph) : graph_(graph), cells_(nearest_place * graph.unit) {
         for (std::uint32_t i = 0; i < graph.places.size(); ++i)
-            cells_.emplace(key(cell(graph.places[i].x), cell(graph.places[i].y)), i);
+            cells_.add(graph.places[i], i);
     }
 
     /// The place nearest to a point, and how far it is in units; a distance without end if none is near.
     std::pair<std::uint32_t, double> nearest(Vec2 point) const {
         std::pair<std::uint32_t, double> best{0, HUGE_VAL};
-        for (std::int64_t x = cell(point.x) - 1; x <= cell(point.x) + 1; ++x)
-            for (std::int64_t y = cell(point.y) - 1; y <= cell(point.y) + 1; ++y) {
-                const auto [first, last] = cells_.equal_range(key(x, y));
-                for (auto at = first; at != last; ++at) {
-                    const Vec2 away = graph_.places[at->second] - point;
-                    const double units = std::hypot(away.x, away.y) / graph_.unit;
-                    if (units <= nearest_place && units < best.second) best = {at->second, units};
-                }
-            }
+        cells_.near(point, [&](std::uint32_t place) {
+            const Vec2 away = graph_.places[place] - point;
+            const double units = std::hypot(away.x, away.y) / graph_.unit;
+            if (units <= nearest_place && units < best.second) best = {place, units};
+        });
         return best;
     }
 
   private:
-    std::int64_t cell(double x) const {
-        return static_cast<std::int64_t>(std::floor(x / (nearest_place * graph_.unit)));
-    }
-    static std::uint64_t key(std::int64_t x, std::int64_t y) {
-        return static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15ull ^
-               static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4Full;
-    }
-
     const StrokeGraph& graph_;
-    std::unordered_multimap<std::uint64_t, std::uint32_t> cells_;
+    PlaceGrid cells_;
 };
 
 using Complex = std::complex<double>;
@@ -240,14 +228,15 @@ std::optional<FoundLsystem> find_lsystem(const FindLsystemOptions& options, cons
         compilation.diagnostics.error({}, std::move(problem)).with_hint(hint);
         return std::nullopt;
     };
-    std::string problem;
-    const std::vector<StrokeGraph> graphs = stroke_graphs(*strokes, options.tolerance, problem);
-    if (graphs.empty())
-        return refuse(fmt::format("the drawing '{}' is no L-system's: {}", options.drawing, problem),
-                      "segments must have one length, or powers of one, and directions that are multiples "
-                      "of an angle; --tolerance allows more");
     try {
         WorkMeter meter(control, "search", 4096, seconds_of_unfolded_module);
+        std::string problem;
+        const std::vector<StrokeGraph> graphs = stroke_graphs(*strokes, options.tolerance, meter, problem);
+        if (graphs.empty())
+            return refuse(
+                fmt::format("the drawing '{}' is no L-system's: {}", options.drawing, problem),
+                "segments must have one length, or powers of one, and directions that are multiples "
+                "of an angle; --tolerance allows more");
         for (const StrokeGraph& graph : graphs) {
             const std::optional<FoundGrammar> grammar = find_grammar(graph, meter, options.on_progress);
             if (!grammar) continue;

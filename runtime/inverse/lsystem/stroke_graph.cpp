@@ -4,11 +4,12 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <unordered_map>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "compiler/support/number.h"
+#include "runtime/inverse/lsystem/place_grid.h"
 
 namespace graftal {
 
@@ -17,6 +18,9 @@ namespace {
 constexpr std::int32_t most_directions = 360;
 constexpr std::size_t most_length_classes = 40;
 constexpr int most_turn_units = 24;
+/// Sizes of turns. Multiples of one angle have far fewer.
+constexpr std::size_t most_turns = 1000;
+constexpr double most_cut_strokes = 2'000'000;
 constexpr double least_angle_deg = 1;
 
 double stroke_length(const Stroke& stroke) {
@@ -77,7 +81,8 @@ struct AngleGrid {
 /// Makes the graph of one reading.
 class StrokeGraphBuilder {
   public:
-    StrokeGraphBuilder(const Strokes& strokes, double reach) : strokes_(strokes), reach_(reach) {}
+    StrokeGraphBuilder(const Strokes& strokes, double reach, WorkMeter& meter)
+        : strokes_(strokes), reach_(reach), meter_(meter), cells_(2 * reach) {}
 
     /// False, with the problem, if there is no angle.
     bool build(StrokeGraph& graph, const std::vector<std::uint8_t>& classes, double noise_deg,
@@ -108,25 +113,16 @@ class StrokeGraphBuilder {
         }
     }
 
-    static std::uint64_t cell_key(std::int64_t x, std::int64_t y) {
-        return static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15ull ^
-               static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4Full;
-    }
-
     std::uint32_t place_of(StrokeGraph& graph, Vec2 point) {
-        const auto x = static_cast<std::int64_t>(std::floor(point.x / (2 * reach_))),
-                   y = static_cast<std::int64_t>(std::floor(point.y / (2 * reach_)));
-        for (std::int64_t v = y - 1; v <= y + 1; ++v)
-            for (std::int64_t u = x - 1; u <= x + 1; ++u) {
-                const auto [from, to] = cells_.equal_range(cell_key(u, v));
-                for (auto at = from; at != to; ++at) {
-                    const Vec2 other = graph.places[at->second];
-                    if (std::hypot(other.x - point.x, other.y - point.y) <= reach_) return at->second;
-                }
-            }
+        std::optional<std::uint32_t> found;
+        cells_.near(point, [&](std::uint32_t place) {
+            const Vec2 away = graph.places[place] - point;
+            if (!found && std::hypot(away.x, away.y) <= reach_) found = place;
+        });
+        if (found) return *found;
         const auto number = static_cast<std::uint32_t>(graph.places.size());
         graph.places.push_back(point);
-        cells_.emplace(cell_key(x, y), number);
+        cells_.add(point, number);
         return number;
     }
 
@@ -153,6 +149,7 @@ class StrokeGraphBuilder {
             for (const double direction : found)
                 if (std::abs(direction) >= least_angle_deg) joints.push_back(std::abs(direction));
         const auto turns = value_groups(joints, noise_deg);
+        if (turns.size() > most_turns) return false;
         double least = HUGE_VAL;
         for (const double angle : angle_candidates(turns, std::max(least_angle_deg, 5 * noise_deg)))
             for (const bool closed : {true, false}) {
@@ -161,6 +158,7 @@ class StrokeGraphBuilder {
                 if (std::abs(circle - whole) < 0.12 && whole <= most_directions)
                     grid.directions = static_cast<std::int32_t>(whole);
                 if (closed != (grid.directions > 0)) continue;
+                meter_.add(found.size());
                 const double allowed = closed ? std::max(noise_deg, 0.1 * angle) : noise_deg;
                 const bool fits = std::ranges::all_of(
                     found, [&](double direction) { return grid.error(direction) <= allowed; });
@@ -181,31 +179,38 @@ class StrokeGraphBuilder {
                 }
             }
         if (least < HUGE_VAL) return true;
-        for (const auto& turn : turns)
-            if (follow_turns(graph, refined(joints, {turn.first, 0}))) {
-                best = {refined(joints, {turn.first, 0}), 0};
-                return true;
-            }
+        for (const auto& turn : turns) {
+            const double angle = refined(joints, {turn.first, 0});
+            if (!follow_turns(graph, angle)) continue;
+            best = {angle, 0};
+            return true;
+        }
         return false;
     }
 
     /// Finds directions that go round many times, from stroke to stroke; false if they are no multiples.
     bool follow_turns(const StrokeGraph& graph, double angle_deg) {
         constexpr double most_error_deg = 0.02;
-        std::vector<std::vector<std::uint32_t>> leaving(graph.places.size());
-        for (std::uint32_t i = 0; i < strokes_.size(); ++i)
-            leaving[ends_[std::size_t{2} * i]].push_back(i);
+        meter_.add(strokes_.size());
+        // Strokes that leave each place, until they are seen: else a place of many would be gone through for
+        // each.
+        std::vector<std::vector<std::uint32_t>> unseen(graph.places.size());
+        for (std::uint32_t i = 1; i < strokes_.size(); ++i)
+            unseen[ends_[std::size_t{2} * i]].push_back(i);
         std::vector<bool> seen(strokes_.size());
         followed_.assign(strokes_.size(), 0);
         const auto next_to = [&](std::uint32_t at, const auto& next) {
-            for (const std::uint32_t place : {ends_[std::size_t{2} * at], ends_[std::size_t{2} * at + 1]})
-                for (const std::uint32_t other : leaving[place]) {
+            for (const std::uint32_t place : {ends_[std::size_t{2} * at], ends_[std::size_t{2} * at + 1]}) {
+                meter_.add(unseen[place].size());
+                std::erase_if(unseen[place], [&](std::uint32_t other) {
                     const double turn = wrapped_deg(degrees_[other] - degrees_[at]);
                     const auto units = static_cast<std::int32_t>(std::lround(turn / angle_deg));
-                    if (seen[other] || std::abs(turn - units * angle_deg) > most_error_deg) continue;
+                    if (std::abs(turn - units * angle_deg) > most_error_deg) return false;
                     followed_[other] = followed_[at] + units;
                     next(other);
-                }
+                    return true;
+                });
+            }
         };
         if (visit_from(0, seen, next_to) == strokes_.size()) return true;
         followed_.clear();
@@ -240,7 +245,8 @@ class StrokeGraphBuilder {
     }
 
     /// The angle by the mean of all turns, with as few digits as they tell.
-    static double refined(const std::vector<double>& turns, const AngleGrid& grid) {
+    double refined(const std::vector<double>& turns, const AngleGrid& grid) {
+        meter_.add(turns.size());
         double sum = 0, weight = 0, squares = 0;
         for (const double turn : turns) {
             const double units = std::round(turn / grid.angle_deg);
@@ -371,9 +377,10 @@ class StrokeGraphBuilder {
 
     const Strokes& strokes_;
     double reach_;
-    std::unordered_multimap<std::uint64_t, std::uint32_t> cells_; ///< places, by cells of a grid
-    std::vector<std::uint32_t> ends_;                             ///< places, two a stroke
-    std::vector<double> degrees_;                                 ///< of strokes, from the first
+    WorkMeter& meter_;
+    PlaceGrid cells_;                    ///< of places
+    std::vector<std::uint32_t> ends_;    ///< places, two a stroke
+    std::vector<double> degrees_;        ///< of strokes, from the first
     std::vector<std::int32_t> followed_; ///< directions of strokes, where they are found one from another
 };
 
@@ -383,7 +390,8 @@ namespace {
 bool cut_into_units(const Strokes& strokes, double unit, double tolerance, Strokes& cut) {
     for (const Stroke& stroke : strokes) {
         const double length = stroke_length(stroke) / unit, whole = std::round(length);
-        if (std::abs(length - whole) > 2 * tolerance || cut.size() > 2'000'000) return false;
+        if (std::abs(length - whole) > 2 * tolerance) return false;
+        if (static_cast<double>(cut.size()) + whole > most_cut_strokes) return false;
         const Vec2 step = (stroke.to - stroke.from) / whole;
         for (double i = 0; i < whole; ++i)
             cut.push_back({stroke.from + i * step, stroke.from + (i + 1) * step});
@@ -408,7 +416,8 @@ std::vector<std::uint8_t> power_classes(const Strokes& strokes, double longest, 
 
 } // namespace
 
-std::vector<StrokeGraph> stroke_graphs(const Strokes& all, double tolerance, std::string& problem) {
+std::vector<StrokeGraph> stroke_graphs(const Strokes& all, double tolerance, WorkMeter& meter,
+                                       std::string& problem) {
     Vec2 low(HUGE_VAL), high(-HUGE_VAL);
     for (const Stroke& stroke : all)
         for (const Vec2 end : {stroke.from, stroke.to}) {
@@ -443,8 +452,8 @@ std::vector<StrokeGraph> stroke_graphs(const Strokes& all, double tolerance, std
         StrokeGraph graph;
         graph.unit = unit;
         graph.factor = factor;
-        if (StrokeGraphBuilder(read, tolerance * shortest_length).build(graph, classes, noise_deg, problem))
-            graphs.push_back(std::move(graph));
+        StrokeGraphBuilder builder(read, tolerance * shortest_length, meter);
+        if (builder.build(graph, classes, noise_deg, problem)) graphs.push_back(std::move(graph));
     };
     const double unit = groups.front().first, longest = groups.back().first;
     Strokes cut;

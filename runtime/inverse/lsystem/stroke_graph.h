@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/support/control.h"
 #include "compiler/support/flat_area.h"
 
 namespace graftal {
@@ -53,7 +54,8 @@ class StrokeGraph {
 
 /// Readings of a drawing as a graph, the likely ones first; none, with the reason, if it has no angle or no
 /// unit. `tolerance`: ends of strokes are one place if they are no farther apart, as a share of the shortest
-/// stroke. Strokes of no length are left out.
-std::vector<StrokeGraph> stroke_graphs(const Strokes& strokes, double tolerance, std::string& problem);
+/// stroke. Strokes of no length are left out. `meter`: of comparisons of strokes.
+std::vector<StrokeGraph> stroke_graphs(const Strokes& strokes, double tolerance, WorkMeter& meter,
+                                       std::string& problem);
 
 } // namespace graftal

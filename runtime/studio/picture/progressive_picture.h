@@ -111,7 +111,6 @@ class ProgressivePicture {
     std::size_t next_window_ = 0;
     TraceStatistics statistics_; ///< of the pass
     int pass_ = 0;
-    int rough_block_ = 0; ///< of the last rough pass
     double rough_seconds_a_sample_ = 0;
     double seconds_a_sample_ = 0; ///< of the clock, with all workers
     double pass_seconds_ = 0;     ///< so far

@@ -132,11 +132,13 @@ class Page : public std::enable_shared_from_this<Page> {
 
     void heard(Error error) {
         if (error || !session_) return stop();
-        if (socket_.got_text()) {
+        try {
             const auto bytes = buffer_.cdata();
-            session_->hear({static_cast<const char*>(bytes.data()), bytes.size()});
-        } else {
-            session_->hear("a binary message");
+            session_->hear(socket_.got_text()
+                               ? std::string_view(static_cast<const char*>(bytes.data()), bytes.size())
+                               : "a binary message");
+        } catch (const std::bad_alloc&) {
+            return stop();
         }
         const auto now = std::chrono::steady_clock::now();
         const double used =
@@ -154,7 +156,11 @@ class Page : public std::enable_shared_from_this<Page> {
     }
 
     void write() {
-        if (writing_ || !session_ || !session_->take(message_)) return;
+        try {
+            if (writing_ || !session_ || !session_->take(message_)) return;
+        } catch (const std::bad_alloc&) {
+            return stop();
+        }
         writing_ = true;
         socket_.binary(message_.binary);
         socket_.async_write(asio::buffer(message_.bytes),
@@ -273,11 +279,16 @@ struct StudioServer::Parts {
     void accept() {
         acceptor.async_accept([this](Error error, Tcp::socket socket) {
             if (shared.stopping) return;
-            // One more than are served is closed at once.
-            if (!error && shared.connections < most_connections)
-                std::make_shared<Connection>(shared, std::move(socket))->read();
-            if (!error) return accept();
-            // No descriptor is left, say: later there may be one.
+            bool is_served = !error;
+            try {
+                // One more than are served is closed at once.
+                if (!error && shared.connections < most_connections)
+                    std::make_shared<Connection>(shared, std::move(socket))->read();
+            } catch (const std::bad_alloc&) {
+                is_served = false;
+            }
+            if (is_served) return accept();
+            // No descriptor is left, say, or no memory: later there may be.
             again.expires_after(std::chrono::milliseconds(100));
             again.async_wait([this](Error stopped) {
                 if (!stopped) accept();
@@ -354,7 +365,7 @@ void StudioServer::run(const CancelFlag& cancel) {
             parts.shared.context.run();
             break;
         } catch (const std::bad_alloc&) {
-            // The connection that asked for it is gone; the others go on.
+            // The work at hand is left: a connection ends by its clock, a page when it is closed.
         }
     }
 }

@@ -98,6 +98,18 @@ TEST_F(Finishes, OfBlackCyclesInheritNothing) {
     EXPECT_LT(cut.nodes[bough].mean.open, 1e-6);
 }
 
+// Found by a reader of the papers: the crown of a tree without end was a quarter grey, and its trunk brown.
+TEST_F(Finishes, OfCyclesThatDrawLittleBesidesThemselvesSettleToo) {
+    cut.materials[bark] = {.rgb = {0.3, 0.17, 0.08}};
+    const NodeId bough = add({{solid, 1, bark}});
+    cut.nodes[bough].edges.push_back({});
+    cut.nodes[bough].edges.back().child = bough;
+    cut.nodes[bough].edges.back().weight = 500;
+    set_mean_colours(cut);
+    EXPECT_LT(cut.nodes[bough].mean.open, 1e-3);
+    EXPECT_NEAR(cut.nodes[bough].mean.fixed.r, 0.3, 1e-3);
+}
+
 TEST_F(Finishes, OfCyclesAreThoseOfTheLimit) {
     // Two thirds of a bough are the bough again, of which a third is bark and two thirds are leaf in the end.
     const NodeId bough = add({{solid, 1, bark}, {solid, 2, leaf}});

@@ -168,12 +168,22 @@ TEST_F(JobFiles, ATaskIsDoneIfItsRecordAndItsPartAgree) {
     ASSERT_EQ(status.failures.size(), 1u);
     EXPECT_EQ(status.failures[0].task, 7u);
     EXPECT_THAT(status.failures[0].message, HasSubstr("no \"room\""));
-    EXPECT_THAT(status_text(folder(), job, status), HasSubstr("1 of 12 tasks done, 1 begun, 1 failed"));
+    const std::string text = status_text(folder(), job, status);
+    EXPECT_THAT(text, HasSubstr("1 of 12 tasks done, 1 begun, 1 failed"));
+    EXPECT_THAT(text, HasSubstr("runs: 4, 2 of them ended without a result")) << "one is at work";
 
     write(folder().part(job, 3), "Pixels"); // as long, and another
     EXPECT_FALSE(is_done(folder(), job, 3));
     write(folder().record(3), "{\"state\":");
     EXPECT_FALSE(is_done(folder(), job, 3));
+}
+
+TEST_F(JobFiles, StatisticsThatAreNoObjectAreLeftOut) {
+    write(folder().record(2), R"({"state": "done", "host": "h", "seconds": 1, "draw_seconds": 1,
+        "processor_seconds": 1, "peak_bytes": 1, "ended": 1, "stats": 5})");
+    const std::optional<TaskRecord> record = read_record(folder(), 2);
+    ASSERT_TRUE(record);
+    EXPECT_EQ(record->stats, "");
 }
 
 TEST_F(JobFiles, ThePaceIsThatOfTheLastEnds) {

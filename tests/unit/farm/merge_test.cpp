@@ -125,6 +125,20 @@ TEST_F(Merges, AContactSheetHasEachPictureInItsCell) {
     EXPECT_FALSE(write_contact_sheet(path("none.png"), {{path("nothing.png"), ""}}, 1, {}, {}).ok());
 }
 
+TEST_F(Merges, AContactSheetIsNoWiderThanItMayBe) {
+    const std::string picture = path("wide.png");
+    ASSERT_TRUE(write_image(picture, colourful(300, 1), SampleFormat::srgb8).ok());
+    for (const std::uint64_t columns : {27u, 32u, 5000u}) {
+        ASSERT_TRUE(write_contact_sheet(path("sheet.png"), std::vector<SheetPicture>(40, {picture, ""}),
+                                        columns, {}, {})
+                        .ok());
+        Image sheet;
+        ASSERT_TRUE(read_image(path("sheet.png"), sheet).ok());
+        EXPECT_LE(sheet.width, 8192) << columns;
+        EXPECT_GT(sheet.width, 8000) << columns;
+    }
+}
+
 TEST_F(Merges, ALabelThatDoesNotFitEndsWithDots) {
     const std::string picture = path("narrow.png");
     ASSERT_TRUE(write_image(picture, colourful(60, 20), SampleFormat::srgb8).ok());

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "compiler/graph/masters_first.h"
+
 namespace graftal {
 namespace {
 
@@ -106,6 +108,16 @@ TEST(Components, AgreeWithReachabilityOnRandomGraphs) {
             EXPECT_EQ(components.unending[i], reaches_a_cycle);
         }
     }
+}
+
+TEST(MastersFirst, FollowsWhatEachNodeLeadsTo) {
+    struct Edge {
+        std::uint32_t child;
+    };
+    // 0 -> 1 -> 2 -> 0, and 3 -> 1, 4
+    const std::vector<std::vector<Edge>> edges = {{{1}}, {{2}}, {{0}}, {{1}, {4}}, {}};
+    EXPECT_EQ(masters_first(edges.size(), [&](std::uint32_t node) { return edges[node]; }),
+              (std::vector<std::uint32_t>{2, 1, 0, 4, 3}));
 }
 
 } // namespace

@@ -61,5 +61,14 @@ TEST(Paint, LiesBehindThatOfTheEdgesAbove) {
     EXPECT_EQ(both.open, 0.125f);
 }
 
+TEST(StraightTint, IsTheTintOfThePathWithinItsRange) {
+    const Tint half{{1, 0.25, 0}, 0.5};
+    EXPECT_EQ(straight(PathTint(half)), half);
+    EXPECT_EQ(straight(PathTint(Tint{{1, 1, 1}, 0})), Tint());
+    EXPECT_EQ(straight(PathTint(half) * PathTint(Tint{{1, 0.25, 1}, 1})), (Tint{{1, 0.25, 0.5}, 1}));
+    const Tint most = straight(PathTint(Rgb(0.3 + 1e-16, 0.1, 0), 0.3));
+    EXPECT_LE(most.rgb.r, 1);
+}
+
 } // namespace
 } // namespace graftal

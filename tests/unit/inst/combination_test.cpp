@@ -8,6 +8,7 @@
 
 #include "compiler/graph/text/print.h"
 #include "compiler/graph/verify.h"
+#include "compiler/lower/check_graph.h"
 #include "compiler/passes/hoist_placements.h"
 #include "compiler/passes/merge_equivalent.h"
 #include "tests/unit/inst/inst_model.h"
@@ -106,6 +107,45 @@ TEST(Combination, limits_how_deep_it_nests) {
                 " scale: 0.9 }\n";
     EXPECT_THAT(InstModel(text + "object all { a40 }").said(), HasSubstr("more than 32 deep"));
     EXPECT_TRUE(InstModel(text.substr(0, text.find("canonical object a33")) + "object all { a32 }").graph);
+}
+
+TEST(Combination, a_terminal_that_leads_back_into_one_is_an_error) {
+    for (const char* const text : {"canonical object b { sphere  terminal: d }\n"
+                                   "object d { difference: cube  instance: b }\n",
+                                   "object d { intersection: cube, sphere  terminal: d }\n",
+                                   "canonical object b { sphere  terminal: c }\n"
+                                   "canonical object c { cone  terminal: d }\n"
+                                   "object d { difference: cube, b }\n"}) {
+        const InstModel model(text);
+        EXPECT_FALSE(model.graph) << text;
+        EXPECT_THAT(model.said(), HasSubstr("leads back to it")) << text;
+        EXPECT_THAT(model.said(), ::testing::Not(HasSubstr("deep"))) << text;
+    }
+}
+
+/// Each object of a ring is looked at once, however far the flat part lies from the operand.
+TEST(Combination, a_flat_part_is_found_all_around_a_long_ring) {
+    constexpr ObjectId count = 50'000;
+    Graph graph;
+    for (ObjectId id = 0; id < count; ++id) {
+        Object object;
+        object.name = "r" + std::to_string(id);
+        object.instances.push_back({(id + 1) % count, Affine::scale(Vec3(0.9)), {}, {}, {}});
+        graph.add(std::move(object));
+    }
+    const ObjectId flat = graph.primitive(PrimitiveKind::triangle);
+    graph.objects[count - 1].instances.push_back({flat, {}, {}, {}, {}});
+    Object cup;
+    cup.name = "cup";
+    cup.combination = Combination::subtract;
+    for (const ObjectId part : {graph.primitive(PrimitiveKind::cube), ObjectId{0}})
+        cup.instances.push_back({part, {}, {}, {}, {}});
+    graph.root = graph.add(std::move(cup));
+    Diagnostics diagnostics;
+    EXPECT_FALSE(check_graph(graph, diagnostics));
+    ASSERT_EQ(diagnostics.all().size(), 1u);
+    EXPECT_EQ(diagnostics.all()[0].message,
+              "'triangle' in 'r0' encloses no volume, so it cannot be a part of the difference 'cup'");
 }
 
 } // namespace

@@ -251,6 +251,37 @@ TEST(Blocks, DistanceFromTheAttractorIsWithinTheBound) {
     }
 }
 
+/// W works on the picture with its margin: its largest distance there is that of the bound.
+TEST(Blocks, TheBoundCountsTheMargin) {
+    TemporaryDirectory directory;
+    ASSERT_TRUE(directory.create().ok());
+    const std::string path = directory.path() + "/p.png";
+    const CounterRandom random(5);
+    for (const auto& [width, height] : {std::pair(5, 5), {33, 9}, {21, 37}}) {
+        const auto noise = [&](int x, int y, int) {
+            return static_cast<double>(random(static_cast<std::uint64_t>(100 * y + x)) % 256);
+        };
+        ASSERT_TRUE(write_image(path, picture(width, height, 1, noise), SampleFormat::srgb8).ok());
+        Image original;
+        ASSERT_TRUE(read_image(path, original).ok());
+        Compilation compilation;
+        const auto found = code_picture(path, 8, {}, {}, compilation);
+        ASSERT_TRUE(found) << compilation.status.message();
+        std::string fault;
+        const auto blocks = read_pifs(found->text, 1 << 30, fault);
+        ASSERT_TRUE(blocks) << fault;
+        const PlaneIteration iteration(blocks->planes.front(), width, height, width, height);
+        LevelPlane to = iteration.grey();
+        const LevelPlane from = with_margin(planes_of(original).planes.front(), to.width, to.height);
+        iteration.apply(from, to, WorkerThreads(1), {});
+        double most = 0;
+        for (std::size_t i = 0; i < to.levels.size(); ++i)
+            most = std::max(most, std::abs(double{to.levels[i]} - from.levels[i]));
+        EXPECT_NEAR(found->collage_most, most, 1e-3) << width;
+        EXPECT_LE(found->most, found->bound + 0.2) << width;
+    }
+}
+
 class BlocksTask : public ::testing::Test {
   protected:
     void SetUp() override {

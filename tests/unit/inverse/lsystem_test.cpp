@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/inverse/lsystem/drawing_file.h"
+#include "runtime/inverse/lsystem/grammar_search.h"
 #include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
@@ -202,6 +203,9 @@ TEST_F(FoundLsystemTest, HostileDrawingsAreRefused) {
         {"0 0 1e300 1\n0 0 1 1\n0 0 2 1\n0 0 3 1\n1e300 4 -1e300 2\n", "is no L-system's"},
         {"0 0 1 0\n5 5 6 5\n9 9 9 10\n3 3 4 3\n", "do not all hang together"},
         {"0 0 1 0\n1 0 1 1.37\n1 1.37 3 1\n3 1 2 8\n2 8 3 9\n", "is no L-system's"},
+        {"0,0,1,0\n1,0,1,1\n1,1,2,1\n2,1,400000002,1\n", "no L-system"}, // 400 million units
+        {"0,0,1,O\n0,0,1,0\n", "line 1 has no four numbers"},
+        {"# lines\n\nx1,y1,x2,y2\nx1,y1,x2,y2\n", "line 4 has no four numbers"},
     };
     for (const auto& [text, problem] : cases) {
         EXPECT_FALSE(find("d.txt", text, 1)) << text;
@@ -229,6 +233,73 @@ TEST_F(FoundLsystemTest, HostileDrawingsAreRefused) {
     }
     EXPECT_FALSE(find("d.txt", steps, 1));
     EXPECT_THAT(message_, HasSubstr("no L-system"));
+}
+
+TEST_F(FoundLsystemTest, ListsMayBeginWithAMarkCommentsAndNames) {
+    const std::string lines = "0 0 1 0\n1 0 1 1\n";
+    for (const std::string head :
+         {"", "\xEF\xBB\xBF", "# a\n\n", "x1;y1;x2;y2\r\n", "\xEF\xBB\xBF# a\nx y u v\n"}) {
+        ASSERT_TRUE(write_text(path("d.csv"), head + lines).ok());
+        Compilation compilation;
+        const auto strokes = read_drawing(path("d.csv"), {}, {}, compilation);
+        ASSERT_TRUE(strokes) << head << compilation.diagnostics.render(compilation.sources);
+        EXPECT_EQ(strokes->size(), 2) << head;
+    }
+}
+
+/// Strokes from one place in these directions, and one that leads there.
+Strokes star(std::size_t count, double angle_deg, std::size_t directions) {
+    Strokes strokes = {{{-1, 0}, {0, 0}}};
+    for (std::size_t i = 0; i < count; ++i) {
+        const double rad = angle_deg * static_cast<double>(i % directions) * std::numbers::pi / 180;
+        strokes.push_back({{0, 0}, {std::cos(rad), std::sin(rad)}});
+    }
+    return strokes;
+}
+
+TEST(StrokeGraphs, StrokesThatMeetAreFollowedByCountedWork) {
+    std::string problem;
+    const auto graphs = [&](const Strokes& strokes, StageWork& work, const CancelFlag& cancel = {}) {
+        const Control control{cancel, {}, &work};
+        WorkMeter meter(control, "search", 4096, seconds_of_unfolded_module);
+        return stroke_graphs(strokes, 0.001, meter, problem);
+    };
+    // A hundred multiples of the angle are too many for a grid of directions: turns are followed.
+    StageWork work;
+    const std::vector<StrokeGraph> found = graphs(star(10'000, 1.7, 100), work);
+    ASSERT_EQ(found.size(), 1u) << problem;
+    EXPECT_NEAR(found[0].angle_deg, 1.7, 1e-9);
+    EXPECT_EQ(found[0].directions, 0);
+    EXPECT_EQ(found[0].strokes, 10'001u);
+    EXPECT_LT(work.seconds(), 1'000'000 * seconds_of_unfolded_module) << "not 10,000 squared";
+    // Few of these directions differ by a multiple of one turn.
+    const Strokes golden = star(3000, 137.50776, 3000);
+    StageWork little(0.02);
+    EXPECT_THROW(graphs(golden, little), OutOfWork);
+    StageWork much;
+    int asked = 0;
+    EXPECT_THROW(graphs(golden, much, CancelFlag([&] { return ++asked > 10; })), Cancelled);
+    EXPECT_EQ(asked, 11);
+}
+
+TEST(StrokeGraphs, ManySizesOfTurnsAreNoAngles) {
+    Strokes strokes;
+    double degrees = 0;
+    Vec2 at(0.0);
+    for (int i = 0; i < 1500; ++i) {
+        degrees += 1 + 0.1 * i;
+        const double rad = degrees * std::numbers::pi / 180;
+        const Vec2 to = at + Vec2(std::cos(rad), std::sin(rad));
+        strokes.push_back({at, to});
+        at = to;
+    }
+    StageWork work;
+    const Control control{{}, {}, &work};
+    WorkMeter meter(control, "search", 4096, seconds_of_unfolded_module);
+    std::string problem;
+    EXPECT_TRUE(stroke_graphs(strokes, 1e-6, meter, problem).empty());
+    EXPECT_THAT(problem, HasSubstr("no angle"));
+    EXPECT_EQ(work.seconds(), 0);
 }
 
 TEST_F(FoundLsystemTest, ModelsInSpaceAreRefused) {

@@ -8,6 +8,8 @@
 #include "compiler/graph/text/print.h"
 #include "compiler/languages/lower.h"
 #include "compiler/lower/named_materials.h"
+#include "compiler/support/files.h"
+#include "compiler/support/texture_facts.h"
 
 namespace graftal {
 namespace {
@@ -223,6 +225,42 @@ TEST(Settings, FaultsOfPatterns) {
         const Model model("material m { " + std::string(fields) + " }\nobject o { sphere material m }");
         EXPECT_THAT(model.errors(), HasSubstr(message)) << fields;
     }
+}
+
+TEST(Settings, OnlyThePictureThatAMaterialShowsHasClearParts) {
+    MemoryFiles files;
+    files.set("leaf.png", "");
+    const LowerHelp help{.look_at_texture =
+                             [](const std::string&, TextureFacts& facts) {
+                                 facts.coverage = 0.5;
+                                 return Status();
+                             },
+                         .files = &files};
+    const auto lowered = [&](const std::string& fields, Diagnostics& diagnostics) {
+        SourceMap sources;
+        return lower_text("m.inst",
+                          "material leaf { texture: \"leaf.png\" }\nmaterial m { from: leaf " + fields +
+                              " }\nobject o { sphere material m }",
+                          {}, sources, diagnostics, help)
+            .graph;
+    };
+    Diagnostics glass, stone;
+    EXPECT_FALSE(lowered("ior: 1.5", glass));
+    ASSERT_EQ(glass.all().size(), 1u);
+    EXPECT_THAT(glass.all()[0].message, HasSubstr("the picture of this material has clear parts"));
+    const std::optional<Graph> graph = lowered("ior: 1.5  pattern: noise", stone);
+    ASSERT_TRUE(graph);
+    EXPECT_EQ(material_of(graph, "m")->coverage, 1);
+}
+
+TEST(Settings, EachParameterIsNotedOnce) {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    const LoweredText lowered =
+        lower_text("m.inst", "let a = 2\nlet b = a\nobject o { sphere scale: b }", {}, sources, diagnostics);
+    ASSERT_EQ(lowered.notes.parameters.size(), 2u) << diagnostics.render(sources);
+    EXPECT_EQ(lowered.notes.parameters[0].name, "a");
+    EXPECT_EQ(lowered.notes.parameters[1].value, 2);
 }
 
 } // namespace

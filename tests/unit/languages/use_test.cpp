@@ -2,10 +2,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -72,6 +74,23 @@ TEST_F(Use, objects_are_prefixed_primitives_shared_and_settings_ignored) {
     EXPECT_EQ(graph_->objects[instances[0].master].name, "leaf.leaf");
     EXPECT_EQ(graph_->objects[instances[2].master].name, "leaf.tip(2)");
     EXPECT_EQ(instances[1].master, object("leaf.tip(2)").instances[0].master);
+}
+
+TEST_F(Use, primitives_that_the_user_has_are_shared_and_others_added_once) {
+    std::string many = "object many {";
+    for (int i = 1; i <= 100; ++i)
+        many += fmt::format(" instance: frustum({})", i / 128.0);
+    write("many.inst", many + " instance: sphere }");
+    write("a.inst", "use m = \"many.inst\"\nobject a { union: frustum(0.25), sphere, m }");
+    lower("a.inst");
+    ASSERT_TRUE(graph_) << errors();
+    std::vector<std::string> all = names();
+    EXPECT_EQ(all.size(), 103u) << "two objects and 101 primitives";
+    std::sort(all.begin(), all.end());
+    EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
+    const std::vector<Instance>& instances = object("a").instances;
+    EXPECT_EQ(object("m.many").instances[31].master, instances[0].master) << "the same frustum";
+    EXPECT_EQ(object("m.many").instances[100].master, instances[1].master);
 }
 
 TEST_F(Use, parts_take_arguments_from_outside) {

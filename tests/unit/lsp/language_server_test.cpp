@@ -178,6 +178,20 @@ TEST(LanguageServer, ModelsFollowThoseThatTheyUse) {
         << editor.findings[whole][0].dump();
 }
 
+TEST(LanguageServer, AModelWithAFaultInWhatItUsesIsNotShownAsItWas) {
+    Editor editor;
+    editor.begin();
+    const std::string part = "file:///nowhere/part.inst", whole = "file:///nowhere/whole.inst";
+    editor.open(part, "object p { cube }\n");
+    editor.open(whole, "use part = \"part.inst\"\nobject m { part part translate: 1, 0, 0 }\n");
+    editor.work();
+    const Json before = editor.result("textDocument/hover", at(whole, 1, 7));
+    editor.tell("textDocument/didChange",
+                {{"textDocument", {{"uri", part}}}, {"contentChanges", {{{"text", "object p { cub }\n"}}}}});
+    editor.work();
+    EXPECT_NE(editor.result("textDocument/hover", at(whole, 1, 7)), before);
+}
+
 TEST(LanguageServer, NewEditsEndOldWork) {
     Editor editor;
     editor.begin();

@@ -58,6 +58,11 @@ TEST(PlantLight, OfASun) {
     EXPECT_NEAR(wide.at(0), 1, 0.01);
     EXPECT_NEAR(wide.light->sunlit_leaf_area, 1, 1e-6);
     EXPECT_FALSE(lit(plant_text(black + "light { sun: 1,-2,0 }\n", level_square), 16).light);
+    const std::string fill = "light { sun: -1,2,0  shadowless }\n";
+    EXPECT_NEAR(lit(plant_text(black + sun + fill, "axiom /(90)" + square(1)), 16).at(0), 0.5, 1e-6);
+    const LitPlant filled = lit(plant_text(black + fill, level_square), 16);
+    EXPECT_FALSE(filled.light);
+    EXPECT_NE(filled.messages.find("no sun that casts shadows"), std::string::npos) << filled.messages;
 }
 
 TEST(PlantLight, OnRoundOrgans) {

@@ -1,12 +1,15 @@
 #include "runtime/points/draw_points.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <numbers>
 #include <utility>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "runtime/points/glow.h"
@@ -293,6 +296,28 @@ TEST_F(Points, OrbitsFollowTheirFormulas) {
     }
 }
 
+TEST_F(Points, OrbitsHaveNoLens) {
+    ASSERT_TRUE(write_text(path("o.rifs"),
+                           "orbit o { map { x = x/2  y = 0 } map { x = x/2 + 1/2  y = y/2 } }\n"
+                           "camera { location: 0,0,5  look_at: 0,0,0  aperture: 0.5 }\n")
+                    .ok());
+    ASSERT_TRUE(draw(path("o.rifs"), "o.png", 1000)) << message_;
+    EXPECT_NE(message_.find("warning: random points have no lens"), std::string::npos) << message_;
+}
+
+TEST_F(Points, OrbitsThatSkipMuchAreNoted) {
+    for (const std::string skip : {"100", "200000"}) {
+        ASSERT_TRUE(
+            write_text(path("o.rifs"),
+                       "orbit o { skip " + skip + "  map { x = x/2  y = 0 } map { x = x/2 + 1/2  y = 0 } }\n")
+                .ok());
+        ASSERT_TRUE(draw(path("o.rifs"), "o.ply", 140'000)) << message_;
+        EXPECT_EQ(message_.find("'skip' leaves out 200000 points before every 131072") != std::string::npos,
+                  skip == "200000")
+            << message_;
+    }
+}
+
 TEST_F(Points, LieWhereRaysSeeThem) {
     // Any point in front of the eye falls into the pixel whose ray goes through it.
     for (const bool parallel : {false, true}) {
@@ -334,6 +359,27 @@ TEST(Tone, CoversFromNothingToAll) {
     EXPECT_EQ(image.pixels[11], 0);
     EXPECT_EQ(image.pixels[4], 1);
     EXPECT_EQ(image.pixels[5], 0);
+}
+
+TEST(Tone, TheGroundIsTheSkyThatTheModelShows) {
+    View view;
+    view.size = {1, 3};
+    SkyLight& sky = view.sky_light.emplace();
+    sky.zenith = Rgb(0, 0, 1);
+    sky.horizon = Rgb(1.0);
+    sky.below = Rgb(0, 1, 0);
+    view.shows_sky_light = true;
+    const double up = 2 * std::tan(view.camera.angle_deg * std::numbers::pi / 360);
+    for (const bool parallel : {false, true}) {
+        view.camera.orthographic = parallel;
+        const Image image = toned(Accumulation(view.size), Tone(), view);
+        ASSERT_EQ(image.pixels.size(), 9u);
+        for (int y = 0; y < 3; ++y) {
+            const Rgb expected = view.background(glm::normalize(Vec3(0, parallel ? 0 : (1 - y) * up, -1)));
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(image.pixels[static_cast<std::size_t>(3 * y + c)], expected[c], 1e-6) << y;
+        }
+    }
 }
 
 TEST(Tone, LightAddsToTheGroundAndMayBeBrighterThanWhite) {

@@ -211,6 +211,22 @@ TEST(GpuPoints, AreAsManyAsWereAskedFor) {
         EXPECT_EQ(points_in(*by_gpu(ChaosSource(game, 1), camera_at({0, 5, 0}, 20), points)), points);
 }
 
+/// Sums of 32 bits hold the levels of 4.2 million points, where colours lie on a line.
+TEST(GpuPoints, MayAllFallIntoOnePixel) {
+    const ChaosGame game =
+        testing::played("a.rifs",
+                        "rifs p { map a { scale 1/2 tint rgb <1, 0, 0> 1 probability 0.9 }\n"
+                        "map b { scale 1/2 translate <1/2, 0, 0> tint rgb <0, 0, 1> 1 probability 0.1 } }")
+            .game();
+    constexpr std::uint64_t points = (1u << 24) + 1000;
+    const auto picture = by_gpu(ChaosSource(game, 1), camera_at({10, 10, 0}, 1000), points);
+    const auto fullest = std::ranges::max_element(picture->cells(), {}, &Accumulation::Cell::count);
+    ASSERT_EQ(fullest->count, points);
+    const Rgb mean = picture->mean_colour(*fullest);
+    EXPECT_NEAR(mean.r, 0.9, 0.01);
+    EXPECT_NEAR(mean.b, 0.1, 0.01);
+}
+
 /// Again, and however sums are added; pixels are small enough for packed ones, and some fill these more than
 /// once.
 TEST(GpuPoints, AreTheSameEachTime) {
@@ -328,6 +344,23 @@ TEST(GpuPoints, FormulasHaveTheirValues) {
     }
     EXPECT_GT(values, 2000);
     EXPECT_GT(none, 100);
+}
+
+TEST(GpuPoints, OrbitsThatSkipMuchAreForTheProcessors) {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    LowerOptions options;
+    options.may_be_orbit = true;
+    for (const auto& [skip, is_flat] : {std::pair("50000", true), {"50001", false}}) {
+        const auto lowered = lower_text("o.rifs",
+                                        "orbit o { skip " + std::string(skip) +
+                                            "\n map { x = x/2 y = 0 }\n map { x = 0 y = y/2 }\n}\n",
+                                        options, sources, diagnostics);
+        ASSERT_TRUE(lowered.notes.orbit) << diagnostics.render(sources);
+        std::string why;
+        EXPECT_EQ(OrbitSource(*lowered.notes.orbit, 1).flat(Affine(), {}, why).has_value(), is_flat) << why;
+        EXPECT_EQ(why.find("'skip' leaves out more than 50000 points") == std::string::npos, is_flat) << why;
+    }
 }
 
 /// One in two moves of each map has no value: see Points.OrbitsMayBeginAgain.

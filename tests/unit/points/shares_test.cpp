@@ -88,6 +88,18 @@ TEST_F(Shares, of_a_part_with_a_plane_are_those_of_the_rest) {
     EXPECT_NEAR(sizes[0] / sizes[1], 100, 1e-6);
 }
 
+TEST_F(Shares, of_many_parts_take_few_looks) {
+    // A million pairs: of each, one ball is in the picture. A whole ring of them counts from its middle, 10
+    // away. A pair counts from its own, at the root of 116.
+    const std::vector<double> sizes =
+        shown(camera + "canonical object pair { ball\n ball translate: 8, 0, 0 }\n"
+                       "canonical object ring { repeat 1000 { rotate: z, 0.36 } { pair } }\n"
+                       "canonical object rings { repeat 1000 { rotate: z, 0.36 } { ring } }\n"
+                       "object all { rings\n pair }");
+    ASSERT_EQ(sizes.size(), 2u);
+    EXPECT_NEAR(sizes[0] / sizes[1], 99'000 + 901'000 * 1.16, 20'000) << "a hundred thousand looks";
+}
+
 TEST_F(Shares, are_none_where_chances_are_stated) {
     EXPECT_TRUE(
         shown(camera + "object all { ball chance: 1\n ball translate: 0, 0, -90 chance: 2 }").empty());

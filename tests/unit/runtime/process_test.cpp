@@ -145,11 +145,10 @@ TEST(Process, ClosedStandardErrorIsNotTheEnd) {
     EXPECT_GE(result.wall_seconds, 0.1);
 }
 
-TEST(Process, MeasuresMemoryAndTime) {
+TEST(Process, MeasuresMemory) {
     const ProcessResult result =
         shell("head -c 50000000 /dev/zero | tail -c 49000000 >/dev/null; exit 0").result;
     EXPECT_GT(result.peak_bytes, 1'000'000u);
-    EXPECT_GE(result.user_seconds + result.system_seconds, 0);
 }
 
 // What the kernel says of a child includes what it was before: a copy of us.

@@ -359,6 +359,16 @@ TEST(Frame, GroundTakesItsMaterialByNameAndItsOwnColour) {
     view = frame(graph, unit_cube, {100, 100});
     EXPECT_EQ(view.ground->material.reflection, 0.5);
     EXPECT_EQ(view.ground->material.rgb, Rgb(0, 0, 1));
+    EXPECT_EQ(view.ground->material.pattern, SolidPattern());
+
+    Material& turf = graph.materials.back();
+    turf.pattern.layers = {{.kind = PatternKind::noise}};
+    turf.pattern.low = turf.pattern.high = Rgb(1, 0, 0);
+    turf.coverage = 0.5;
+    view = frame(graph, unit_cube, {100, 100});
+    EXPECT_EQ(view.ground->material.pattern.low, Rgb(0, 0, 0.65)) << "about the ground's own colour";
+    EXPECT_EQ(view.ground->material.pattern.high, Rgb(0, 0, 1));
+    EXPECT_EQ(view.ground->material.coverage, 1) << "its picture has gone";
 }
 
 TEST(Frame, SunIsAboveTheGroundEvenIfTheEyeLooksUp) {
@@ -443,6 +453,8 @@ TEST(ShapedSize, SuitsTheModelAndHasAsManyPixels) {
     };
     EXPECT_EQ(of({{-1, 0, -1}, {1, 9, 1}}), (ImageSize{720, 1280}));
     EXPECT_EQ(of({{-9, 0, -1}, {9, 2, 1}}), usual);
+    EXPECT_EQ(of({{0, 0, 0}, {0, 9, 0}}), (ImageSize{720, 1280})) << "of no width";
+    EXPECT_EQ(of({{0, 0, 0}, {9, 0, 0}}), usual) << "of no height";
     EXPECT_EQ(of(square), (ImageSize{960, 960}));
     for (const Box& box : {unit_cube, Box{{0, 0, 0}, {2, 3, 0}}, Box{Vec3(1), Vec3(1)}}) {
         const ImageSize size = of(box);

@@ -197,7 +197,11 @@ TEST(StudioSession, MessagesThatItCannotReadChangeNothing) {
                                R"({"type": "state", "number": 2, "steps": -1})",
                                R"({"type": "state", "number": 2, "set": {"spread": "wide"}})",
                                R"({"type": "ask", "what": "command"})",
-                               R"({"type": "ask", "id": 1073741824})"};
+                               R"({"type": "ask", "id": 1073741824})",
+                               R"({"type": "ask", "id": 5, "what": "command"})",
+                               R"({"type": "state", "number": 2, "film": {}})",
+                               R"({"type": "state", "number": 2, "film": {"frames": 3, "steps": 4}})",
+                               R"({"type": "state", "number": 2, "camera": {"up": [0, 0, 1e300]}})"};
     for (const std::string& message : bad)
         page.session.hear(message);
     page.work();
@@ -250,6 +254,73 @@ TEST(StudioSession, MomentsOfAFilmHaveItsView) {
     const Vec3 expected = all.view(*session.analysed(stages, compilation), stages.view).camera.location;
     for (int axis = 0; axis < 3; ++axis)
         EXPECT_NEAR(first["location"][axis].get<double>(), expected[axis], 1e-12) << "as `animate` frames it";
+}
+
+/// A page that has drawn one state after the other.
+Page& shown(Page& page, const std::vector<json>& states) {
+    for (const json& state : states) {
+        page.show(state);
+        page.work();
+    }
+    return page;
+}
+
+TEST(StudioSession, AFilmsViewGoesBackWithItsCamera) {
+    const json film{{"frames", 5}, {"set", {{"spread", {{0, 0.1}, {1, 2}}}}}};
+    const json plain{{"text", crystal}, {"film", film}}, looked{{"camera", {{"location", {0, 9, 1}}}}};
+    Page page, other;
+    json from_above = plain;
+    from_above.update(looked);
+    const json first = shown(page, {plain}).last("model")["camera"];
+    EXPECT_NE(shown(other, {from_above}).last("model")["camera"], first);
+    EXPECT_EQ(shown(other, {plain}).last("model")["camera"], first);
+}
+
+TEST(StudioSession, AStateThatWasNeverDrawnLeavesNothingBehind) {
+    const json second{{"text", heavy}}, turned{{"text", heavy}, {"camera", {{"location", {3, 2, 1}}}}};
+    Page page, alone;
+    shown(page, {{{"text", crystal}}});
+    page.show(second);
+    page.session.work(0); // compiles it
+    shown(page, {turned});
+    shown(alone, {turned});
+    EXPECT_EQ(page.picture(64, 36), alone.picture(64, 36));
+}
+
+TEST(StudioSession, AThumbnailIsDrawnHoweverSmallTheBudget) {
+    Page page;
+    shown(page, {{{"text", crystal}}});
+    page.say({{"type", "ask"},
+              {"id", 1u << 30u},
+              {"what", "thumbnail"},
+              {"text", heavy},
+              {"width", 96},
+              {"height", 54}});
+    int calls = 0;
+    while (page.count("answer") == 0 && ++calls < 20'000)
+        page.session.work(1e-5);
+    EXPECT_FALSE(page.last("answer").contains("error"));
+    EXPECT_LT(calls, 20'000);
+}
+
+TEST(StudioSession, AThumbnailOfABadFilmIsAnsweredAndThePictureStays) {
+    Page page;
+    shown(page, {{{"text", crystal}}});
+    const json answer = page.ask("thumbnail", {{"width", 64}, {"height", 36}, {"film", json::object()}});
+    EXPECT_TRUE(answer.contains("error"));
+    EXPECT_EQ(page.count("fault"), 0u);
+    EXPECT_FALSE(page.ask("thumbnail", {{"width", 64}, {"height", 36}}).contains("error"));
+}
+
+TEST(StudioSession, AsksThatWaitHoldABoundedAmountOfText) {
+    Page page;
+    const json large{
+        {"type", "ask"}, {"id", 1u << 30u}, {"what", "x"}, {"text", std::string(12u << 20u, 'x')}};
+    for (int i = 0; i < 4; ++i)
+        page.say(large);
+    page.work();
+    EXPECT_EQ(page.count("answer"), 2u);
+    EXPECT_EQ(page.count("fault"), 2u);
 }
 
 TEST(StudioSession, AFilmThatCannotBeReadIsAFault) {

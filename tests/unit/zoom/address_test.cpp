@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "compiler/support/stage_price.h"
+
 namespace graftal {
 namespace {
 
@@ -156,6 +158,56 @@ TEST(Address, NotFoundSaysWhy) {
     EXPECT_EQ(find("a.c#3").error, "the address does not exist: 'a' has no part 'c#3'; it has 2 that fit");
     EXPECT_EQ(find("a.c#1.sphere.x").error,
               "the address does not exist: 'sphere' has no part 'x'; it is a primitive and has no parts");
+}
+
+/// Objects that each place the next, and the last of them the first.
+Graph ring(ObjectId count) {
+    Graph graph;
+    for (ObjectId id = 0; id < count; ++id) {
+        Object object;
+        object.name = "o" + std::to_string(id);
+        object.instances.push_back({(id + 1) % count, Affine::scale(Vec3(0.5)), {}, {}, {}});
+        graph.add(std::move(object));
+    }
+    return graph;
+}
+
+TEST(Address, AnEndlessPathIsOfLimitedLength) {
+    struct Case {
+        ObjectId ring;
+        const char* address;
+        std::size_t cycle; // 0: refused
+    };
+    for (const Case& c : {Case{11, "((#1)*1000)*", 11'000}, Case{1, "((#1)*1000000)*", 1'000'000},
+                          Case{1009, "((#1)*100000)*", 0}}) {
+        std::string problem;
+        const auto address = parse_address(c.address, problem);
+        ASSERT_TRUE(address) << problem;
+        StageWork work;
+        Control control;
+        control.work = &work;
+        Diagnostics diagnostics;
+        const auto path = find_path(ring(c.ring), *address, diagnostics, control);
+        EXPECT_EQ(path.has_value(), c.cycle > 0) << c.address;
+        if (path)
+            EXPECT_EQ(path->cycle.size(), c.cycle) << c.address;
+        else
+            EXPECT_EQ(diagnostics.all()[0].message, "the address leads through more than 1000000 instances");
+        EXPECT_LE(work.seconds(), 2.1e6 * StagePrice::name) << c.address;
+    }
+}
+
+TEST(Address, AmbiguousInALaterRoundIsAnError) {
+    Graph graph = ring(1);
+    graph.objects[0].instances.push_back(graph.objects[0].instances[0]);
+    Object root;
+    root.name = "root";
+    root.instances.push_back({0, {}, {}, {}, {}});
+    graph.root = graph.add(std::move(root));
+    std::string problem;
+    Diagnostics diagnostics;
+    EXPECT_FALSE(find_path(graph, *parse_address("(o0)*", problem), diagnostics));
+    EXPECT_EQ(diagnostics.error_count(), 1u);
 }
 
 } // namespace

@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "compiler/zoom/neighbourhood.h"
 #include "tests/unit/detail/models.h"
 
 namespace graftal {
@@ -339,9 +340,11 @@ TEST(Reroot, LightsGroundAndHazeFollow) {
     const FrameObject frame = [](ObjectId, unsigned) {
         View view = face_on(2.5);
         view.lights = {{.location = Vec3(0, 3, 0), .a = Vec3(0, 0, 0.5), .b = Vec3(0.25, 0, 0)},
-                       {.location = Vec3(0, 1, 0), .sun = true}};
+                       {.location = Vec3(0, 1, 0), .sun = true},
+                       {.location = Vec3(0, 1, 0), .a = Vec3(0, 0, 0.5)}};
         view.ground = Ground{1.0, {}};
         view.haze = Haze{.distance = 1e-97, .height = std::numeric_limits<double>::infinity()};
+        view.lens = {0.5, 10};
         return view;
     };
     Diagnostics diagnostics;
@@ -361,6 +364,15 @@ TEST(Reroot, LightsGroundAndHazeFollow) {
     EXPECT_TRUE(zoomed("1e100").lights[0].sun);
     EXPECT_LT(glm::distance(zoomed("1e100").lights[0].location, Vec3(0, 1, 0)), 1e-12);
     EXPECT_TRUE(zoomed("1e100").lights[1].sun);
+    for (const char* const zoom : {"4", "1e100", "1e400"}) {
+        const Light& at_focus = zoomed(zoom).lights[2];
+        EXPECT_EQ(at_focus.location, Vec3(0.0)) << zoom;
+        EXPECT_FALSE(at_focus.sun) << zoom;
+        EXPECT_TRUE(std::isfinite(at_focus.a.z)) << zoom;
+        EXPECT_GE(at_focus.a.z, 2) << zoom;
+        EXPECT_EQ(at_focus.b, Vec3(0.0)) << zoom;
+    }
+    EXPECT_EQ(zoomed("4").lens.radius, 0) << "its depth was that of the camera before";
     ASSERT_TRUE(zoomed("1e100").ground) << "the focus lies on it";
     EXPECT_NEAR(zoomed("4").ground->height, 0, 1e-12);
     ASSERT_TRUE(zoomed("1e100").haze) << "an even one, whose base lies far below in this picture";
@@ -391,6 +403,49 @@ TEST(Reroot, TheGroundStaysInTheWorld) {
     ASSERT_TRUE(plane.material);
     EXPECT_EQ(rerooted->graph.materials[*plane.material].name, "ground");
     EXPECT_EQ(rerooted->bounds.size(), rerooted->graph.objects.size());
+}
+
+/// A part of itself, beside many that each step down leaves far behind.
+TEST(Reroot, EachStepDownMayLookAtAsManyPieces) {
+    constexpr std::size_t siblings = 4000, steps = 510;
+    static_assert(siblings * steps > Neighbourhood::most_looks);
+    Graph graph;
+    const ObjectId sphere = graph.primitive(PrimitiveKind::sphere);
+    Object root{"root", {}, {}, {}, {}};
+    root.instances.push_back({1, Affine::scale(Vec3(0.5)), {}, {}, {}});
+    root.instances.resize(1 + siblings, {sphere, Affine::translate({100, 0, 0}), {}, {}, {}});
+    graph.root = graph.add(std::move(root));
+    const Components components = strong_components(graph);
+    const std::vector<ObjectBounds> bounds = {
+        {{Vec3(-1.0), Vec3(1.0)}, {Vec3(0.0), 1}, false},
+        {{Vec3(-101, -1, -1), Vec3(101, 1, 1)}, {Vec3(0.0), 102}, false}};
+    StageWork work;
+    Control control;
+    control.work = &work;
+    WorkMeter meter(control, "frame", 1000, 1);
+    Neighbourhood around(graph, components, bounds, {}, meter);
+    for (std::size_t i = 0; i < steps; ++i)
+        ASSERT_EQ(around.descend(0, Vec3(0.0), 1), Neighbourhood::Outcome::done) << i;
+    EXPECT_FALSE(around.looked_too_often());
+    meter.charge(0);
+    EXPECT_EQ(work.seconds(), static_cast<double>(steps * (1 + siblings))) << "each is counted";
+    EXPECT_LT(around.ways().steps(), 75'000u) << "ways of parts far behind are forgotten";
+    around.ways().set_ends({around.own().way});
+    EXPECT_EQ(around.ways().path(0), std::vector<GraphStep>(steps, {1, 0}));
+}
+
+TEST(NearWays, KeepOnlyTheirOwnSteps) {
+    NearWays ways;
+    const std::uint32_t first = ways.add(NearWays::root, {0, 1}), dead = ways.add(first, {1, 7});
+    std::uint32_t last = ways.add(first, {1, 2}), root = NearWays::root, other = ways.add(last, {2, 3});
+    ways.add(dead, {7, 7});
+    ways.keep_only({&last, &root, &other});
+    EXPECT_EQ(ways.steps(), 3u);
+    EXPECT_EQ(root, NearWays::root);
+    ways.set_ends({other, last, root});
+    EXPECT_EQ(ways.path(0), (std::vector<GraphStep>{{0, 1}, {1, 2}, {2, 3}}));
+    EXPECT_EQ(ways.path(1), (std::vector<GraphStep>{{0, 1}, {1, 2}}));
+    EXPECT_TRUE(ways.path(2).empty());
 }
 
 } // namespace

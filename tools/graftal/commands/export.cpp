@@ -13,6 +13,15 @@ namespace graftal {
 
 namespace {
 
+/// Says what was written. The exit status.
+int tell(const Options& options, const Compilation& compilation, const Interruption& interruption,
+         const std::optional<std::string>& written) {
+    const int status = conclude(options, compilation, interruption.signal());
+    if (written && status == exit_done && !options.quiet)
+        say(fmt::format("{}: {}\n", options.render.output, *written));
+    return status;
+}
+
 /// The modules of an L-system as data.
 int run_plant(const Options& options, const PlantFormat& format) {
     Compilation compilation;
@@ -27,10 +36,7 @@ int run_plant(const Options& options, const PlantFormat& format) {
         export_plant(session, render, format, export_options(options).file,
                      options.irradiance ? &light : nullptr, compilation);
     bar.clear();
-    const int status = conclude(options, compilation, interruption.signal());
-    if (written && status == exit_done && !options.quiet)
-        say(fmt::format("{}: {}\n", options.render.output, *written));
-    return status;
+    return tell(options, compilation, interruption, written);
 }
 
 } // namespace
@@ -47,10 +53,7 @@ int run_export(const Options& options) {
     session.set_control({time.flag(), {}});
     const std::optional<std::string> written = export_model(session, export_options(options), compilation);
     bar.clear();
-    const int status = conclude(options, compilation, interruption.signal());
-    if (written && status == exit_done && !options.quiet)
-        say(fmt::format("{}: {}\n", options.render.output, *written));
-    return status;
+    return tell(options, compilation, interruption, written);
 }
 
 } // namespace graftal

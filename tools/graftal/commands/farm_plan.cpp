@@ -8,6 +8,7 @@
 #include "compiler/import/importers.h"
 #include "compiler/session/shared_framing.h"
 #include "compiler/support/printable.h"
+#include "compiler/support/shell_words.h"
 #include "runtime/farm/join_tiles.h"
 #include "runtime/farm/model_copy.h"
 #include "runtime/fit/fit_picture.h"
@@ -21,7 +22,6 @@
 #include "runtime/system/process_memory.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/commands/farm_job.h"
-#include "tools/graftal/options/values.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/support/shell_words.h"
 #include "runtime/farm/job_status.h"
 #include "runtime/farm/slurm.h"
 #include "runtime/farm/task_records.h"
@@ -16,7 +17,6 @@
 #include "runtime/system/worker_threads.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/commands/farm_job.h"
-#include "tools/graftal/options/values.h"
 #include "tools/graftal/progress_bar.h"
 #include "tools/graftal/report.h"
 
@@ -87,8 +87,8 @@ class SlurmSubmission {
                             arrays_.back().id));
             return exit_fault;
         }
-        const bool well = leave_out_active(missing) && (missing.empty() || submit(missing));
-        if (!well) return exit_environment;
+        leave_out_active(missing);
+        if (!missing.empty() && !submit(missing)) return exit_environment;
         if (missing.empty() && !options_.quiet) say("all missing tasks wait or are at work in Slurm\n");
         return exit_done;
     }
@@ -110,7 +110,7 @@ class SlurmSubmission {
     }
 
     /// Tasks of groups that Slurm still has are on their way.
-    bool leave_out_active(std::vector<std::uint64_t>& missing) {
+    void leave_out_active(std::vector<std::uint64_t>& missing) {
         std::set<std::uint64_t> active;
         for (const SlurmArray& array : arrays_) {
             // Slurm does not know a job that ended long ago, which is no failure.
@@ -122,7 +122,6 @@ class SlurmSubmission {
                     active.insert(array.groups[index - 1].begin(), array.groups[index - 1].end());
         }
         std::erase_if(missing, [&](std::uint64_t task) { return active.contains(task); });
-        return true;
     }
 
     std::string log_pattern(const std::string& name) const { return slurm_folder(folder_) + "/" + name; }

@@ -22,7 +22,10 @@ int answer_fit(const Options& options, const std::optional<Found>& found,
     const int status = conclude(options, compilation, interruption.signal());
     if (!found || !compilation.status.ok()) return status;
     if (options.json) {
-        const int printed = print_output(json(options, *found).dump(2) + "\n");
+        // Names of files need not be UTF-8.
+        const std::string text =
+            json(options, *found).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+        const int printed = print_output(text + "\n");
         return status == exit_done ? printed : status;
     }
     if (!options.quiet) say(report(options, *found));

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "compiler/import/importers.h"
+#include "compiler/support/shell_words.h"
 #include "runtime/render/animate.h"
-#include "tools/graftal/options/values.h"
 
 namespace graftal {
 

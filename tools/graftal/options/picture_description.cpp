@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compiler/support/printable.h"
-#include "tools/graftal/options/values.h"
+#include "compiler/support/shell_words.h"
 
 namespace graftal {
 

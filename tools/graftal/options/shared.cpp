@@ -45,8 +45,8 @@ void add_swept(CLI::App& app, Options& options, const std::string& name, const s
               read_either, [](const std::function<void()>& set) { set(); });
 }
 
-} // namespace
-
+/// The bytes of the option `name`; nothing for what is no number of them. A usage error where the unit is
+/// forgotten.
 std::optional<std::uint64_t> sensible_bytes(const std::string& name, const std::string& text) {
     constexpr std::uint64_t least_without_unit = 1u << 20;
     const std::optional<std::uint64_t> bytes = parse_bytes(text);
@@ -57,6 +57,8 @@ std::optional<std::uint64_t> sensible_bytes(const std::string& name, const std::
         *bytes < 1024 ? fmt::format("{0}M or {0}G", *bytes) : fmt::format("{}K", *bytes >> 10)));
 }
 
+} // namespace
+
 std::string model_file_help(const std::string& more) {
     std::vector<std::string> endings;
     for (const Importer& importer : importers())
@@ -65,6 +67,13 @@ std::string model_file_help(const std::string& more) {
     return fmt::format(
         "Model file (.lsys, .rifs, .inst{}; of other programs .{}: see 'graftal import --help')", more,
         fmt::join(endings, ", ."));
+}
+
+void add_bytes(CLI::App& app, const std::string& name, const std::string& help,
+               const std::function<void(std::uint64_t)>& store) {
+    add_value(
+        app, name, "BYTES", help, "a number of bytes such as 512M",
+        [name](const std::string& text) { return sensible_bytes(name, text); }, store);
 }
 
 std::optional<std::string> pass_named(const std::string& text, bool all_allowed) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,10 +16,6 @@
 #include "tools/graftal/options.h"
 
 namespace graftal {
-
-/// The bytes of the option `name`; nothing for what is no number of them. A usage error where the unit is
-/// forgotten.
-std::optional<std::uint64_t> sensible_bytes(const std::string& name, const std::string& text);
 
 /// "Model file (.lsys, .rifs, .inst, ...)", for help.
 std::string model_file_help(const std::string& more = "");
@@ -55,12 +53,8 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::strin
 }
 
 /// Adds an option for a number of bytes, which `store` gets.
-template<typename Store>
-void add_bytes(CLI::App& app, const std::string& name, const std::string& help, Store store) {
-    add_value(
-        app, name, "BYTES", help, "a number of bytes such as 512M",
-        [name](const std::string& text) { return sensible_bytes(name, text); }, store);
-}
+void add_bytes(CLI::App& app, const std::string& name, const std::string& help,
+               const std::function<void(std::uint64_t)>& store);
 
 /// A pass of the pipeline, or "all" if that is allowed; else a usage error.
 std::optional<std::string> pass_named(const std::string& text, bool all_allowed);

@@ -1,7 +1,6 @@
 #include "tools/graftal/options/values.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -12,11 +11,8 @@
 namespace graftal {
 
 std::optional<std::uint64_t> parse_whole(std::string_view text, std::uint64_t least, std::uint64_t most) {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || value < least || value > most)
-        return std::nullopt;
-    return value;
+    const auto value = parse_whole<std::uint64_t>(text);
+    return value && *value >= least && *value <= most ? value : std::nullopt;
 }
 
 std::optional<ImageSize> parse_large_size(std::string_view text) {
@@ -187,24 +183,6 @@ std::string parse_camera(std::string_view text, CameraOverride& camera) {
         if (!problem.empty()) return problem;
     }
     return {};
-}
-
-std::string shell_quoted(const std::vector<std::string>& words) {
-    constexpr std::string_view harmless =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_=+.,/:@%^";
-    std::string out;
-    for (const std::string& word : words) {
-        if (!out.empty()) out += ' ';
-        if (!word.empty() && word.find_first_not_of(harmless) == std::string::npos) {
-            out += word;
-            continue;
-        }
-        out += '\'';
-        for (const char c : word)
-            out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-        out += '\'';
-    }
-    return out;
 }
 
 } // namespace graftal

@@ -65,7 +65,4 @@ std::optional<std::string_view> take_setting(std::string_view& text);
 /// returns what is wrong with them, or "".
 std::string parse_camera(std::string_view text, CameraOverride& camera);
 
-/// The words as a POSIX shell would have to be given them.
-std::string shell_quoted(const std::vector<std::string>& words);
-
 } // namespace graftal

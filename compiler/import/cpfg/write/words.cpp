@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "compiler/import/cpfg/dialect.h"
+#include "compiler/import/cpfg/expression.h"
 #include "compiler/import/foreign_text.h"
 
 namespace graftal {

@@ -231,6 +231,33 @@ TEST(RunCut, CellsHoldNoEdges) {
     EXPECT_LT(edges, 200u); // memory goes with these
 }
 
+TEST(RunCut, CellsKnowTheSizesOfPartsHoweverLargeOrSmall) {
+    const auto octave = [](double size) {
+        auto run = std::make_shared<graftal::Run>();
+        for (int i = 0; i < 200; ++i) {
+            RunItem item;
+            item.base = size * Vec3(i, 0, 0);
+            item.axis = size * Vec3(0.75, 0, 0);
+            item.radius = 0.02 * size;
+            item.shape = PrimitiveKind::cylinder;
+            run->add(item);
+        }
+        Graph graph;
+        Object object;
+        object.name = "row";
+        object.packed.run = run;
+        object.packed.materials.resize(1);
+        graph.root = graph.add(std::move(object));
+        const Bounded model(std::move(graph));
+        const CutGraph cut = build_cut_graph(model.graph, model.bounds);
+        EXPECT_TRUE(cut.nodes[cut.root].cell);
+        return cut.nodes[cut.root].cell->alike.at(0).quarter_octave;
+    };
+    EXPECT_EQ(octave(1), -2); // 0.75^4 lies between 1/4 and 1/2
+    EXPECT_EQ(octave(0x1p270), 4 * 270 - 2);
+    EXPECT_EQ(octave(0x1p-290), -4 * 290 - 2);
+}
+
 TEST(RunCut, ProxiesAreAsDarkAsWhatTheyStandFor) {
     // Few thin parts in a large box leave most of it open, many fill it.
     for (const auto& [radius, least, most] : {std::tuple(1e-4, 0.0, 0.05), std::tuple(0.5, 0.7, 1.0)}) {

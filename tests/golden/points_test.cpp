@@ -200,7 +200,8 @@ TEST_F(CommandLine, FitDrawings) {
     EXPECT_EQ(graftal("fit broken.svg").status, 1);
     EXPECT_EQ(graftal("fit none.svg").status, 3);
     EXPECT_EQ(graftal("fit bush.svg -o nowhere/a.lsys").status, 3);
-    EXPECT_EQ(files(), "again.lsys broken.svg bush.lsys bush.svg found.lsys pen.svg two.csv");
+    EXPECT_EQ(files(),
+              "again.lsys broken.svg bush.lsys bush.svg found.lsys koch.lsys pen.svg two.csv \xff.lsys");
 }
 
 } // namespace

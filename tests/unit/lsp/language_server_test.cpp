@@ -183,7 +183,7 @@ TEST(LanguageServer, AModelWithAFaultInWhatItUsesIsNotShownAsItWas) {
     editor.begin();
     const std::string part = "file:///nowhere/part.inst", whole = "file:///nowhere/whole.inst";
     editor.open(part, "object p { cube }\n");
-    editor.open(whole, "use part = \"part.inst\"\nobject m { part part translate: 1, 0, 0 }\n");
+    editor.open(whole, "use part = \"part.inst\"\nobject m { part, part translate: 1, 0, 0 }\n");
     editor.work();
     const Json before = editor.result("textDocument/hover", at(whole, 1, 7));
     editor.tell("textDocument/didChange",

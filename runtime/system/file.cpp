@@ -185,15 +185,18 @@ Status PendingFile::commit() {
 }
 
 /// Commits, but keeps the old file: under the temporary's name, or where the file system cannot exchange two
-/// names, under another.
+/// names, under another. On one without hard links it is gone.
 Status PendingFile::take_place() {
     if (Status status = check_written(); !status.ok()) return status;
     exchanged_ = !is_special_file(target_) &&
                  ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0;
     if (!exchanged_) {
-        before_ = temporary_name();
-        was_there_ = ::link(target_.c_str(), before_.c_str()) == 0 || errno != ENOENT;
-        pending_paths.note(before_.c_str());
+        was_there_ = ::access(target_.c_str(), F_OK) == 0;
+        std::string before = temporary_name();
+        if (was_there_ && ::link(target_.c_str(), before.c_str()) == 0) {
+            before_ = std::move(before);
+            pending_paths.note(before_.c_str());
+        }
         return commit();
     }
     committed_ = true;
@@ -201,12 +204,12 @@ Status PendingFile::take_place() {
 }
 
 void PendingFile::give_back() {
-    if (!exchanged_ && was_there_)
-        ::rename(before_.c_str(), target_.c_str());
-    else if (!exchanged_)
-        ::unlink(target_.c_str());
-    else
+    if (exchanged_)
         ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE);
+    else if (!was_there_)
+        ::unlink(target_.c_str());
+    else if (!before_.empty())
+        ::rename(before_.c_str(), target_.c_str());
 }
 
 Status commit_together(std::span<PendingFile* const> files) {

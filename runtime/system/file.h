@@ -77,7 +77,7 @@ class PendingFile {
 };
 
 /// Commits all of them in this order, or none: where one cannot be, those before it become again what they
-/// were.
+/// were, unless the file system knows neither exchange nor hard links.
 Status commit_together(std::span<PendingFile* const> files);
 
 /// Removes the temporaries of all PendingFiles that there are. For handlers of signals: only system calls.

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <span>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "compiler/support/check.h"
@@ -111,6 +110,38 @@ template<class Value> class Field {
     int height_;
 };
 
+// Eigen's sums of products depend on the instruction set; these have one order on all machines.
+
+Light product(const Features& features, const Slopes& slopes) {
+    Light sum = features[0] * slopes.row(0);
+    for (int k = 1; k < feature_count; ++k)
+        sum += features[k] * slopes.row(k);
+    return sum;
+}
+
+/// The solution of a x = b by Cholesky's decomposition; not finite where `a` is not positive definite.
+Slopes solved(Square a, Slopes b) {
+    for (int j = 0; j < feature_count; ++j) {
+        for (int k = 0; k < j; ++k)
+            for (int i = j; i < feature_count; ++i)
+                a(i, j) -= a(i, k) * a(j, k);
+        const float diagonal = std::sqrt(a(j, j));
+        for (int i = j; i < feature_count; ++i)
+            a(i, j) /= diagonal;
+    }
+    for (int j = 0; j < feature_count; ++j) {
+        for (int k = 0; k < j; ++k)
+            b.row(j) -= a(j, k) * b.row(k);
+        b.row(j) /= a(j, j);
+    }
+    for (int j = feature_count; j-- > 0;) {
+        for (int k = j + 1; k < feature_count; ++k)
+            b.row(j) -= a(k, j) * b.row(k);
+        b.row(j) /= a(j, j);
+    }
+    return b;
+}
+
 Fit fit_of(const Moments& sum) {
     if (!(sum.weight > least_weight)) return {Slopes::Zero(), Light::Zero()};
     const float share = 1 / sum.weight;
@@ -118,9 +149,9 @@ Fit fit_of(const Moments& sum) {
     const Light light = share * sum.light;
     Square covariance = share * sum.feature_feature - feature * feature.transpose();
     covariance.diagonal() = (1 + ridge_share) * covariance.diagonal().cwiseMax(0) + Features::Constant(ridge);
-    const Slopes slopes = covariance.llt().solve(share * sum.feature_light - feature * light);
+    const Slopes slopes = solved(covariance, share * sum.feature_light - feature * light);
     if (!slopes.allFinite()) return {Slopes::Zero(), light};
-    return {slopes, light - feature.transpose() * slopes};
+    return {slopes, light - product(feature, slopes)};
 }
 
 class TileDenoiser {
@@ -287,7 +318,7 @@ class TileDenoiser {
         const int right = place(x, fits.width(), left, across), below = place(y, fits.height(), top, down);
         const auto by = [&](int column, int row, float weight) -> Light {
             const Fit& fit = fits.at(column, row);
-            return weight * (fit.level + features.transpose() * fit.slopes);
+            return weight * (fit.level + product(features, fit.slopes));
         };
         const Light light = by(left, top, (1 - across) * (1 - down)) + by(right, top, across * (1 - down)) +
                             by(left, below, (1 - across) * down) + by(right, below, across * down);

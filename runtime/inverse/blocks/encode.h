@@ -14,6 +14,11 @@ struct BlockCoding {
     double seconds = 30;  ///< of one processor, by counted work
 };
 
+struct BlocksFound {
+    BlockPicture picture;
+    double seconds = 0; ///< of counted work
+};
+
 /// Partitioned iterated function systems whose attractors are near the planes of a picture. For each range
 /// block of each side, the domain and the isometry with the least error are looked for, by the products of
 /// all with all: 16 means of each block, less their mean. The eight best are compared pixel by pixel, with
@@ -22,10 +27,6 @@ struct BlockCoding {
 ///
 /// The result depends on picture and coding, not on the number of workers. Throws Cancelled, and OutOfWork
 /// where not even the smallest pool is affordable.
-struct BlocksFound {
-    BlockPicture picture;
-    double seconds = 0; ///< of counted work
-};
 BlocksFound find_blocks(const PicturePlanes& picture, const BlockCoding& coding, const Workers& workers,
                         const CancelFlag& cancel, const std::function<void(double)>& on_progress);
 

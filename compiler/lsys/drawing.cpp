@@ -413,10 +413,11 @@ class Drawer {
         constexpr double same = 1e-6;
         const auto early = sketch(graph, steps_ / 2), late = sketch(graph, steps_ - steps_ / 4);
         if (!early || !late) return {};
-        // A figure that converges grows less and less: by one factor in as many steps.
-        const double gain = std::abs(part.reach - late->reach),
-                     gain_before = std::abs(late->reach - early->reach);
-        if (gain <= std::max(same * part.reach, (1 - same) * gain_before)) return {};
+        // The reach of a figure that converges changes by one factor in as many steps (A. Aitken's limit).
+        const double gain = part.reach - late->reach, factor = gain / (late->reach - early->reach);
+        const double limit = part.reach + gain * factor / (1 - factor);
+        const bool settles = std::abs(factor) < 1 - same && limit > same * part.reach;
+        if (std::abs(gain) <= same * part.reach || settles) return {};
         const Vec3 chord = part.start_from_exit.translation;
         const double length = glm::length(chord);
         const double size = length > same * part.reach ? length : part.reach;

@@ -119,6 +119,12 @@ TEST_F(Stats, LimitsThatConvergeKeepTheirSize) {
     write("grows.lsys",
           "lsys t {\n  steps infinite\n  width 0.01\n  axiom F\n  F -> F+(60)F-(120)F+(60)F\n}\n");
     EXPECT_NEAR(stats(path("grows.lsys"))["bounds"]["max"][1].get<double>(), 1, 0.02);
+    for (const double ratio : {0.2, 0.3, 0.333}) { // less than a third: it shrinks to a point
+        write("shrinks.lsys", fmt::format("lsys t {{\n  steps infinite\n  axiom F(1)\n  F(l) -> "
+                                          "F(l*{0})+(60)F(l*{0})-(120)F(l*{0})+(60)F(l*{0})\n}}\n",
+                                          ratio));
+        EXPECT_NEAR(stats(path("shrinks.lsys"))["bounds"]["max"][1].get<double>(), 1, 0.02) << ratio;
+    }
     EXPECT_EQ(stats(pound_sign)["volume"]["most"], 0) << "its 7 cubes of 8 are less each level";
 }
 

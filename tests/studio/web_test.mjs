@@ -136,7 +136,7 @@ class ProgramSession {
 }
 
 const drawn = ['abop/fig1_25.lsys', 'abop/fig1_24d.lsys', 'hart/elm.inst', 'hart/pound_sign.rifs', 'hart/ternary_tree.inst',
-  'ifs/menger_sponge.rifs', 'ifs/fern.rifs', 'ifs/heighway_dragon.rifs', 'papers/five_maps.rifs', 'papers/bamboo.lsys'];
+  'ifs/menger_sponge.rifs', 'ifs/fern.rifs', 'ifs/heighway_dragon.rifs', 'papers/five_maps.rifs', 'papers/bipinnate_leaf.lsys'];
 
 await test('both sessions draw the same pictures', async () => {
   const wasm = await new WasmSession().start(), native = await new ProgramSession().start();

@@ -65,7 +65,7 @@ TEST_F(Faults, NoMemoryIsSaidWithoutTakingAny) {
 TEST_F(Faults, AnotherSceneForWantOfMemoryIsNotSilent) {
     const std::string command = "compile -q --size 48x28 -o - m.rifs";
     const std::string good = graftal(command).out;
-    constexpr int first = 4000, step = 6, run_to_end = 40; // the fault had 13 calls
+    constexpr int first = 4000, step = 12, run_to_end = 40; // the fault had 13 calls
     int others = 0, equal = 0;
     for (int number = first; equal < run_to_end; number += step) {
         const RunResult result = with("alloc:" + std::to_string(number), command);

@@ -24,7 +24,7 @@ struct ObjectBounds {
     std::shared_ptr<const RunBounds> run; ///< of an object that has one: of its ranges (run_bounds.h)
 };
 
-/// The box of a primitive (exact), and its smallest ball. A plane has neither.
+/// The box of a primitive (exact), and a small ball (PrimitiveTraits). A plane has neither.
 ObjectBounds primitive_bounds(const Primitive& primitive);
 
 /// The instances whose union bounds the object: of a difference the first one. None of an intersection, which

@@ -12,8 +12,8 @@ namespace graftal {
 /// The box that an item fills, its ball included. Exact except for rounding, which it allows for.
 Box box_of(const RunItem& item);
 
-/// Boxes about ranges of a run. Items that follow each other were drawn one after the other, and so lie near
-/// each other: the boxes of ranges, of ranges of these and so on make a tree, without any sorting.
+/// Boxes about ranges of a run. Items that follow each other lie near each other (order_in_space()): the
+/// boxes of ranges, of ranges of these and so on make a tree.
 class RunBounds {
   public:
     static constexpr std::size_t items_a_range = 32; ///< of the lowest level

@@ -19,6 +19,7 @@ namespace graftal {
 namespace {
 
 constexpr std::uint64_t most_steps_taken = 200'000'000; // some two seconds
+constexpr std::size_t most_parts_compared = 1000;       // each is held against each
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const Box everywhere{Vec3(-infinity), Vec3(infinity)};
@@ -65,6 +66,11 @@ bool holds(const Box& outer, const Box& inner) {
            glm::all(glm::lessThanEqual(inner.max, outer.max + slack));
 }
 
+bool holds(const Ball& outer, const Ball& inner) {
+    const double reach = glm::length(inner.centre - outer.centre) + inner.radius;
+    return inner.empty() || reach <= (1 + 1e-9) * outer.radius;
+}
+
 bool is_convex(const Primitive& primitive) {
     switch (primitive.kind()) {
     case PrimitiveKind::sphere:
@@ -100,7 +106,7 @@ class VolumeAnalysis {
     VolumeAnalysis(const Graph& graph, const Components& components, std::span<const ObjectBounds> bounds,
                    std::optional<unsigned> levels)
         : graph_(graph), components_(components), bounds_(bounds), levels_(levels),
-          ranges_(graph.objects.size()) {}
+          ball_holds_(graph.objects.size(), true), ranges_(graph.objects.size()) {}
 
     std::optional<VolumeRange> of_root() {
         for (const std::vector<ObjectId>& members : components_.members)
@@ -126,31 +132,52 @@ class VolumeAnalysis {
         return bounds_[id].unbounded || reaches_out ? everywhere : bounds_[id].box;
     }
 
-    /// Whether the boxes of limit sets hold what is drawn where levels end, too: each holds its object's
-    /// terminal, and the boxes of its parts.
+    /// Whether the box or ball of a limit set holds what is drawn where levels end, too, if those of its
+    /// parts do: it holds the object's terminal, and those of its parts.
+    template<typename Bound> bool holds_levels(ObjectId id, Bound ObjectBounds::*bound) const {
+        const Object& object = graph_.objects[id];
+        const auto is_held = [&](const Instance& part) {
+            return graftal::holds(bounds_[id].*bound,
+                                  transformed(part.parent_from_child, bounds_[part.master].*bound));
+        };
+        // Objects in no cycle are passed before levels end, if there are more levels than such objects.
+        const bool may_be_cut =
+            components_.cyclic[components_.component_of[id]] || *levels_ < unending_.size();
+        return !(may_be_cut && is_proxy(object)) && (!object.terminal || is_held(*object.terminal)) &&
+               std::all_of(object.instances.begin(), object.instances.end(), is_held);
+    }
+
     bool boxes_hold_levels() const {
         return std::all_of(unending_.begin(), unending_.end(), [&](const Unending& object) {
-            const Object& written = graph_.objects[object.id];
-            const auto is_held = [&](const Instance& part) {
-                return graftal::holds(bounds_[object.id].box,
-                                      transformed(part.parent_from_child, bounds_[part.master].box));
-            };
-            // Objects in no cycle are passed before levels end, if there are more levels than such objects.
-            const bool may_be_cut =
-                components_.cyclic[components_.component_of[object.id]] || *levels_ < unending_.size();
-            return !(may_be_cut && is_proxy(written)) && (!written.terminal || is_held(*written.terminal)) &&
-                   std::all_of(written.instances.begin(), written.instances.end(), is_held);
+            return holds_levels(object.id, &ObjectBounds::box);
         });
+    }
+
+    /// Masters come first, and members of a cycle hold what all of them do.
+    void find_balls_that_hold() {
+        for (const std::vector<ObjectId>& members : components_.members) {
+            const bool hold = std::all_of(members.begin(), members.end(), [&](ObjectId id) {
+                const std::vector<Instance>& parts = graph_.objects[id].instances;
+                return !components_.unending[id] ||
+                       (holds_levels(id, &ObjectBounds::ball) &&
+                        std::all_of(parts.begin(), parts.end(),
+                                    [&](const Instance& part) { return ball_holds_[part.master]; }));
+            });
+            for (const ObjectId id : members)
+                ball_holds_[id] = hold;
+        }
     }
 
     bool lie_apart(const Instance& a, const Instance& b) const {
         const Box box_a = box_of(a.master), box_b = box_of(b.master);
         if (!is_finite(box_a) || !is_finite(box_b)) return box_a.empty() || box_b.empty();
+        if (graftal::lie_apart(transformed(a.parent_from_child, box_a),
+                               transformed(b.parent_from_child, box_b)))
+            return true;
+        if (!ball_holds_[a.master] || !ball_holds_[b.master]) return false;
         const Ball ball_a = transformed(a.parent_from_child, bounds_[a.master].ball);
         const Ball ball_b = transformed(b.parent_from_child, bounds_[b.master].ball);
-        return graftal::lie_apart(transformed(a.parent_from_child, box_a),
-                                  transformed(b.parent_from_child, box_b)) ||
-               glm::length(ball_a.centre - ball_b.centre) >= ball_a.radius + ball_b.radius;
+        return glm::length(ball_a.centre - ball_b.centre) >= ball_a.radius + ball_b.radius;
     }
 
     /// Whether `outer` is a convex primitive that holds all of `inner`.
@@ -168,8 +195,7 @@ class VolumeAnalysis {
 
     /// Gives parts one group where they may overlap, directly or by way of others.
     void group(std::span<const Instance> instances, std::span<Part> parts) {
-        constexpr std::size_t most_parts = 1000; // each is held against each
-        if (parts.size() > most_parts || !take_steps(parts.size() * parts.size() / 2)) return;
+        if (parts.size() > most_parts_compared || !take_steps(parts.size() * parts.size() / 2)) return;
         for (std::uint32_t i = 0; i < parts.size(); ++i) {
             parts[i].group = i;
             for (std::uint32_t j = 0; j < i; ++j) {
@@ -188,12 +214,15 @@ class VolumeAnalysis {
             parts.push_back({instance.master, growth(instance.parent_from_child)});
         const std::size_t united = object.combination == Combination::subtract ? 1 : 0; // and all that follow
         group(instances.subspan(united), std::span(parts).subspan(united));
+        const std::size_t others = object.combination == Combination::subtract ? 1 : parts.size();
+        constexpr std::size_t corners = 8; // are looked for in each of the others
+        const bool compares = object.is_combined() && others <= most_parts_compared &&
+                              take_steps(corners * parts.size() * others);
         for (std::size_t i = 0; object.is_combined() && i < parts.size(); ++i) {
             parts[i].reaches = i == 0 || !lie_apart(instances[0], instances[i]);
-            const std::size_t others = object.combination == Combination::subtract ? 1 : parts.size();
-            parts[i].within = true;
-            for (std::size_t j = 0; j < others; ++j)
-                parts[i].within = parts[i].within && (i == j || holds(instances[j], instances[i]));
+            parts[i].within = compares;
+            for (std::size_t j = 0; parts[i].within && j < others; ++j)
+                parts[i].within = i == j || holds(instances[j], instances[i]);
         }
         return parts;
     }
@@ -283,6 +312,7 @@ class VolumeAnalysis {
         std::vector<VolumeRange> deeper;
         std::size_t edges = 0;
         boxes_hold_levels_ = levels_ && boxes_hold_levels();
+        if (levels_) find_balls_that_hold();
         for (Unending& object : unending_) {
             object.parts = parts_of(object.id);
             edges += object.parts.size() + 1;
@@ -313,6 +343,7 @@ class VolumeAnalysis {
     const std::span<const ObjectBounds> bounds_;
     const std::optional<unsigned> levels_;
     bool boxes_hold_levels_ = false;
+    std::vector<bool> ball_holds_;    ///< by object: all that is drawn of it
     std::vector<VolumeRange> ranges_; ///< by object
     std::vector<Unending> unending_;
     std::vector<double> group_least_;

@@ -19,7 +19,7 @@ class PlacedSurface {
   public:
     PlacedSurface(const Primitive& primitive, const Affine& world_from_primitive);
 
-    /// The area of the image, to some per cent where the map bends a curved surface out of shape, else exact.
+    /// The area of the image, to some per cent; exact of what lies in a plane, and under similarities.
     double area() const { return area_; }
     /// A point of the image.
     Vec3 point(RandomStream& random) const;

@@ -20,6 +20,7 @@
 #include "compiler/detail/primitive_numbers.h"
 #include "compiler/detail/shell/shell.h"
 #include "compiler/primitives/part_size.h"
+#include "compiler/primitives/sheet.h"
 #include "compiler/primitives/tessellate.h"
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/check.h"
@@ -40,6 +41,7 @@ struct KeptLeaf {
     std::uint32_t primitive = 0; ///< by Baker::primitives_
     NormalField normals;
     double turns = 1;
+    bool wide = false; ///< drawn wider than it is
 };
 
 /// Attributes that the leaves of one part share.
@@ -88,7 +90,7 @@ Affine spread_turn(std::size_t number) {
 
 class Baker {
   public:
-    Baker(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+    Baker(const DetailGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
           std::size_t max_triangles)
         : cut_(cut), symmetry_(symmetry), request_(request), max_triangles_(max_triangles) {}
 
@@ -153,7 +155,8 @@ class Baker {
             BakedPart& part = parts_[place_of_part->second];
             const TessellatedPrimitive& coarsest = tessellated(leaf.primitive, 0);
             part.smooth = part.smooth || part.textured || !coarsest.normals.empty();
-            part.leaves.push_back({place, primitive, leaf.normals, leaf.turns});
+            const bool wide = place.linear != leaf.representative_from_leaf.linear;
+            part.leaves.push_back({place, primitive, leaf.normals, leaf.turns, wide});
             numbers_.push_back(number);
             baked_.culled_detail = std::max(baked_.culled_detail, leaf.culled_detail);
             // A solid may have no face left where others touch it; it counts when the mesh is built.
@@ -242,12 +245,14 @@ class Baker {
     void build(BakedPart& part) {
         MeshBuilder builder(part.smooth);
         counted_ = 0;
+        const bool translucent = lets_light_through(part);
         const Affine body_from_representative = inverse(baked_.representative_from_body);
         for (std::uint32_t number = 0; number < part.leaves.size(); ++number) {
             const KeptLeaf& leaf = part.leaves[number];
             const Primitive& primitive = primitives_[leaf.primitive];
             const int level = fineness(primitive, leaf);
             Affine place = body_from_representative * leaf.place;
+            if (translucent) builder.leave_out(face_of_sheet(primitive, place, leaf.wide));
             if (part.textured) {
                 const double around = cut_.materials[*part.material].around;
                 builder.add_textured(primitive, level, place, texture_space(primitive, around, leaf.turns),
@@ -268,6 +273,17 @@ class Baker {
         baked_.triangles += part.mesh.triangles.size();
     }
 
+    bool lets_light_through(const BakedPart& part) const {
+        const std::optional<MaterialId> id = part.material ? part.material : request_.material;
+        return id && cut_.materials[*id].translucency > 0 && !cut_.materials[*id].is_transparent();
+    }
+
+    /// The side to which one of the two faces of a sheet looks; 0 if it is none.
+    static Vec3 face_of_sheet(const Primitive& primitive, const Affine& place, bool wide) {
+        constexpr double thickest_of_wide = 0.5;
+        const auto sheet = sheet_of(primitive, place.linear, wide ? thickest_of_wide : thickest_sheet);
+        return sheet ? sheet->normal : Vec3(0.0);
+    }
     /// Counts what the last leaf has brought. False where that is too much: triangles of pictures have
     /// corners of their own, and a flat mesh may lose what other faces hide.
     bool goes_on(const BakedPart& part, const MeshBuilder& builder) {
@@ -318,7 +334,7 @@ class Baker {
 
     static constexpr std::uint64_t leaves_a_look = 1 << 10;
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     const Symmetry& symmetry_;
     const BakeRequest& request_;
     std::size_t max_triangles_;
@@ -337,7 +353,7 @@ PathTint rounded(const PathTint& tint, double grain) {
     return {glm::round(tint.premultiplied / grain) * grain, std::round(tint.alpha / grain) * grain};
 }
 
-Baked bake(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+Baked bake(const DetailGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
            std::size_t max_triangles) {
     if (!request.shell) return Baker(cut, symmetry, request, max_triangles).bake();
     ShellRequest shell;

@@ -11,7 +11,7 @@ PathTint rounded(const PathTint& tint, double grain);
 
 /// Unfolds the request into triangles. Leaves that coincide are drawn once; faces on which two cubes meet are
 /// not drawn at all, nobody can see them. Deterministic.
-Baked bake(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+Baked bake(const DetailGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
            std::size_t max_triangles);
 
 } // namespace graftal

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/mesh/mesh.h"
 #include "compiler/detail/self_shadow.h"
 #include "compiler/support/control.h"

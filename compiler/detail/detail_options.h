@@ -8,7 +8,7 @@
 
 namespace graftal {
 
-/// Facts of the picture that prepare_cut() needs.
+/// Facts of the picture that prepare_graph() needs.
 struct PrepareOptions {
     std::optional<unsigned> steps;            ///< levels; nothing: as deep as the error asks for
     bool culls = true;                        ///< whether anything is culled for its size

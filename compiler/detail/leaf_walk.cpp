@@ -20,7 +20,7 @@ constexpr std::uint64_t visits_of_a_comparison = 4;
 
 } // namespace
 
-LeafWalk::LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+LeafWalk::LeafWalk(const DetailGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
                    std::span<const Painter> painters)
     : cut_(cut), symmetry_(symmetry), detail_per_unit_(request.detail_per_unit), error_px_(request.error_px),
       self_shadows_(request.self_shadows),
@@ -35,7 +35,7 @@ LeafWalk::LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequ
 bool LeafWalk::next(WalkedLeaf& leaf) {
     while (!stack_.empty()) {
         pop();
-        const CutNode& shape = cut_.nodes[visit_.shape];
+        const DetailNode& shape = cut_.nodes[visit_.shape];
         leaf.material = paints_.front().material;
         leaf.culled_detail = visit_.culled_detail;
         leaf.crushed = visit_.crushed;
@@ -82,7 +82,7 @@ void LeafWalk::pop() {
     paint_stack_.erase(begin, paint_stack_.end());
 }
 
-void LeafWalk::enter_ball(const CutNode& shape) {
+void LeafWalk::enter_ball(const DetailNode& shape) {
     if (!limit_normals_ || !shape.unending) return;
     balls_.resize(visit_.depth++);
     balls_.push_back({visit_.representative_from_node(shape.ball.centre), visit_.scale * shape.ball.radius});
@@ -120,9 +120,9 @@ void LeafWalk::push_children(bool is_cut, double detail) {
 
 /// The last of them first. All painters show them alike.
 void LeafWalk::push_items() {
-    std::vector<CutEdge> edges;
-    for_each_edge(cut_.nodes[visit_.shape], false, [&](const CutEdge& edge) { edges.push_back(edge); });
-    for (const CutEdge& edge : edges | std::views::reverse) {
+    std::vector<DetailEdge> edges;
+    for_each_edge(cut_.nodes[visit_.shape], false, [&](const DetailEdge& edge) { edges.push_back(edge); });
+    for (const DetailEdge& edge : edges | std::views::reverse) {
         fill_child(edge, false, 0, stack_.emplace_back());
         for (const Painted& paint : paints_) {
             Painted& child = paint_stack_.emplace_back(paint);
@@ -144,7 +144,7 @@ bool LeafWalk::is_new(const Visit& child) {
     return met_.insert(alike_kind(child.shape, child.steps, child.faint), cells, child.scale);
 }
 
-void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const {
+void LeafWalk::fill_child(const DetailEdge& edge, bool is_cut, double detail, Visit& child) const {
     child.shape = edge.child;
     child.steps = steps_below(visit_.steps, edge);
     child.representative_from_node = visit_.representative_from_node * edge.node_from_child;
@@ -159,8 +159,8 @@ void LeafWalk::fill_child(const CutEdge& edge, bool is_cut, double detail, Visit
 
 void LeafWalk::fill_child(const Painted& paint, std::size_t edge, bool is_cut, Painted& child) const {
     const NodePair& pair = symmetry_.pairs[paint.pair];
-    const CutNode& colours = cut_.nodes[pair.b];
-    const CutEdge& twin = followed_edges(colours, is_cut)[(is_cut ? pair.stop_edge : pair.edge)[edge]];
+    const DetailNode& colours = cut_.nodes[pair.b];
+    const DetailEdge& twin = followed_edges(colours, is_cut)[(is_cut ? pair.stop_edge : pair.edge)[edge]];
     child = paint;
     child.pair = (is_cut ? pair.stop_pair : pair.edge_pair)[edge];
     child.descend(look_step(cut_, colours, is_cut, twin));

@@ -34,7 +34,7 @@ struct WalkedLeaf {
 class LeafWalk {
   public:
     /// `painters`: of the request, the first or all.
-    LeafWalk(const CutGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
+    LeafWalk(const DetailGraph& cut, const Symmetry& symmetry, const BakeRequest& request,
              std::span<const Painter> painters);
 
     /// The next leaf, or false at the end. Memory: the parts that wait, with a colour for each painter, and
@@ -61,21 +61,21 @@ class LeafWalk {
         std::uint32_t pair = 0;
     };
 
-    const CutNode& colours_of(const Painted& paint) const {
+    const DetailNode& colours_of(const Painted& paint) const {
         return cut_.nodes[symmetry_.pairs[paint.pair].b];
     }
     void pop();
-    void enter_ball(const CutNode& shape);
+    void enter_ball(const DetailNode& shape);
     NormalField normals() const;
     double light_share(double detail) const;
     void push_children(bool is_cut, double detail);
     void push_items();
     bool is_new(const Visit& child);
     // Where they lie: to build them elsewhere and to copy them would take twice the time.
-    void fill_child(const CutEdge& edge, bool is_cut, double detail, Visit& child) const;
+    void fill_child(const DetailEdge& edge, bool is_cut, double detail, Visit& child) const;
     void fill_child(const Painted& paint, std::size_t edge, bool is_cut, Painted& child) const;
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     const Symmetry& symmetry_;
     double detail_per_unit_;
     double error_px_;

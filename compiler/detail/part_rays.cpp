@@ -28,7 +28,7 @@ constexpr double reach_of_proxies = 1.25;
 
 } // namespace
 
-PartRays::PartRays(const CutGraph& cut, const Projection& projection, std::uint32_t root_steps,
+PartRays::PartRays(const DetailGraph& cut, const Projection& projection, std::uint32_t root_steps,
                    double watched_px, bool limit_normals)
     : cut_(cut), projection_(projection), root_steps_(root_steps), watched_px_(watched_px),
       limit_normals_(limit_normals) {
@@ -66,7 +66,7 @@ Ball PartRays::ball_of(const At& at) const {
 }
 
 void PartRays::enter(At at) {
-    const CutNode& node = cut_.nodes[at.node];
+    const DetailNode& node = cut_.nodes[at.node];
     if (node.primitive) return meet(at, *node.primitive, at.world_from_node, false);
     if (node.sealed || at.depth + 1 >= deepest) return;
     bool cut = node.unending && at.steps == 0;
@@ -94,15 +94,15 @@ void PartRays::enter(At at) {
 }
 
 void PartRays::go_below(const At& at, bool cut) {
-    const CutNode& node = cut_.nodes[at.node];
+    const DetailNode& node = cut_.nodes[at.node];
     std::vector<Waiting>& waiting = waiting_[at.depth];
     const double per_unit = node.unbounded ? 0 : projection_.detail_per_unit(ball_of(at));
     waiting.clear();
-    std::deque<CutEdge> items; // of a cell: they are made here
+    std::deque<DetailEdge> items; // of a cell: they are made here
     const bool is_cell = node.cell && !cut;
-    for_each_edge(node, cut, [&](const CutEdge& edge) {
+    for_each_edge(node, cut, [&](const DetailEdge& edge) {
         ++work_;
-        const CutNode& child = cut_.nodes[edge.child];
+        const DetailNode& child = cut_.nodes[edge.child];
         double t = least_;
         if (!child.unbounded) {
             Ball ball{at.world_from_node(edge.node_from_child(child.ball.centre)),
@@ -131,7 +131,7 @@ void PartRays::go_below(const At& at, bool cut) {
     }
 }
 
-void PartRays::follow(const At& parent, const CutEdge& edge, bool parent_is_cut) {
+void PartRays::follow(const At& parent, const DetailEdge& edge, bool parent_is_cut) {
     At child = parent;
     child.descend(look_step(cut_, cut_.nodes[parent.node], parent_is_cut, edge));
     child.node = edge.child;
@@ -172,7 +172,7 @@ void PartRays::meet(const At& at, const Primitive& primitive, const Affine& worl
     best_.part = at.part;
     best_.part_px = at.part_px;
     if (any_) return;
-    const CutNode& node = cut_.nodes[at.node];
+    const DetailNode& node = cut_.nodes[at.node];
     best_.material = proxy && node.finish ? node.finish : at.material;
     best_.rgb = at.tint.over(proxy ? colour_of_proxy(node).over(at.inherited) : at.inherited);
     best_.normal = glm::normalize(glm::transpose(leaf_from_world.linear) * hit.normal);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/projection.h"
 #include "compiler/support/ray.h"
 
@@ -29,8 +29,8 @@ class PartRays {
   public:
     /// Keeps references. `root_steps`: levels that the root has. `watched_px`: PartHit::part. Requires a
     /// projection that culls by pixels. `limit_normals`: whether proxies show them (mesh/limit_normal.h).
-    PartRays(const CutGraph& cut, const Projection& projection, std::uint32_t root_steps, double watched_px,
-             bool limit_normals);
+    PartRays(const DetailGraph& cut, const Projection& projection, std::uint32_t root_steps,
+             double watched_px, bool limit_normals);
 
     /// The nearest hit beyond `least`; of unit length the direction. False if there is none, or if the ray
     /// went by too many parts.
@@ -56,18 +56,18 @@ class PartRays {
     };
     struct Waiting {
         double t = 0;
-        const CutEdge* edge = nullptr;
+        const DetailEdge* edge = nullptr;
     };
 
     bool run(const Ray& ray, RayRange range, bool any);
     void enter(At at);
     void go_below(const At& at, bool cut);
-    void follow(const At& parent, const CutEdge& edge, bool parent_is_cut);
+    void follow(const At& parent, const DetailEdge& edge, bool parent_is_cut);
     void meet(const At& at, const Primitive& primitive, const Affine& world_from_leaf, bool proxy);
     Ball ball_of(const At& at) const;
     bool done() const { return (any_ && found_) || work_ > work_limit_; }
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     const Projection& projection_;
     std::uint32_t root_steps_;
     double watched_px_;

@@ -8,7 +8,7 @@
 
 namespace graftal {
 
-Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool piece_is_cut) {
+Piece descend(const DetailGraph& cut, const Piece& piece, const DetailEdge& edge, bool piece_is_cut) {
     Piece child = piece;
     child.descend(look_step(cut, cut.nodes[piece.node], piece_is_cut, edge));
     child.node = edge.child;
@@ -19,26 +19,26 @@ Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool
     return child;
 }
 
-Ball world_ball(const CutGraph& cut, const Piece& piece) {
+Ball world_ball(const DetailGraph& cut, const Piece& piece) {
     const Ball& ball = cut.nodes[piece.node].ball;
     return {piece.world_from_node(ball.centre), piece.scale * ball.radius};
 }
 
-double detail_of(const CutGraph& cut, const Projection& projection, const Piece& piece) {
+double detail_of(const DetailGraph& cut, const Projection& projection, const Piece& piece) {
     const Ball ball = world_ball(cut, piece);
     if (!projection.culls() || cut.nodes[piece.node].unbounded)
         return std::numeric_limits<double>::infinity();
     return 2 * ball.radius * projection.detail_per_unit(ball);
 }
 
-PieceKind kind_of(const CutGraph& cut, const Projection& projection, const Piece& piece) {
+PieceKind kind_of(const DetailGraph& cut, const Projection& projection, const Piece& piece) {
     PieceKind kind{piece.node, piece.steps, PieceKind::endless_detail};
     if (projection.culls() && !cut.nodes[piece.node].unbounded)
         kind.unit_step = PieceKind::step_of(piece.scale * projection.detail_per_unit(world_ball(cut, piece)));
     return kind;
 }
 
-Weights::Weight weight_of(const CutGraph& cut, const Projection& projection, Weights& weights,
+Weights::Weight weight_of(const DetailGraph& cut, const Projection& projection, Weights& weights,
                           const Piece& piece) {
     Weights::Weight sum;
     Walk<Piece> walk;
@@ -46,13 +46,13 @@ Weights::Weight weight_of(const CutGraph& cut, const Projection& projection, Wei
     constexpr std::uint64_t most_parts = 10'000;
     for (Piece part; walk.next(part);) {
         const PieceKind kind = weights.normalised(kind_of(cut, projection, part));
-        const CutNode& node = cut.nodes[part.node];
+        const DetailNode& node = cut.nodes[part.node];
         if (!node.unbounded || node.primitive || walk.visits() > most_parts) {
             sum += weights.of(kind);
             continue;
         }
         const bool ends = weights.is_cut(kind);
-        for_each_edge(node, ends, [&](const CutEdge& edge) { walk.push(descend(cut, part, edge, ends)); });
+        for_each_edge(node, ends, [&](const DetailEdge& edge) { walk.push(descend(cut, part, edge, ends)); });
     }
     return sum;
 }

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/graph/piece_kind.h"
 #include "compiler/detail/projection.h"
 #include "compiler/detail/weights.h"
@@ -21,19 +21,19 @@ struct Piece : Look {
 };
 
 /// Steps down one edge.
-Piece descend(const CutGraph& cut, const Piece& piece, const CutEdge& edge, bool piece_is_cut);
+Piece descend(const DetailGraph& cut, const Piece& piece, const DetailEdge& edge, bool piece_is_cut);
 
 /// The node's ball, placed.
-Ball world_ball(const CutGraph& cut, const Piece& piece);
+Ball world_ball(const DetailGraph& cut, const Piece& piece);
 /// The detail of the piece's diameter.
-double detail_of(const CutGraph& cut, const Projection& projection, const Piece& piece);
+double detail_of(const DetailGraph& cut, const Projection& projection, const Piece& piece);
 
 /// The kind of the piece as it lies, not normalised.
-PieceKind kind_of(const CutGraph& cut, const Projection& projection, const Piece& piece);
+PieceKind kind_of(const DetailGraph& cut, const Projection& projection, const Piece& piece);
 
 /// The weight of the piece. The parts of what holds a plane are each weighed where they lie, since the whole
 /// has no size; infinite where they are too many for that.
-Weights::Weight weight_of(const CutGraph& cut, const Projection& projection, Weights& weights,
+Weights::Weight weight_of(const DetailGraph& cut, const Projection& projection, Weights& weights,
                           const Piece& piece);
 
 } // namespace graftal

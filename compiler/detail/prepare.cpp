@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/detail/graph/build_cut_graph.h"
+#include "compiler/detail/graph/build_detail_graph.h"
 #include "compiler/detail/shadow/coverage.h"
 #include "compiler/support/stage_price.h"
 
@@ -17,19 +17,19 @@ constexpr std::uint64_t prepared_a_look = 20'000;
 
 /// Where levels do not end, objects are cut for their size alone. A proxy then stands for all that is left
 /// out. The form of an object's last level, a trunk without its twigs, would be too little.
-void drop_endings(CutGraph& cut) {
-    for (CutNode& node : cut.nodes)
+void drop_endings(DetailGraph& cut) {
+    for (DetailNode& node : cut.nodes)
         if (!node.terminal && !node.sealed) node.stop_edges.clear();
 }
 
 /// Parts that are drawn wider than they are make what holds them wider, too.
-void mark_wide(CutGraph& cut) {
+void mark_wide(DetailGraph& cut) {
     std::vector<std::vector<NodeId>> users(cut.nodes.size());
     std::vector<NodeId> wide;
     for (NodeId id = 0; id < cut.nodes.size(); ++id) {
-        CutNode& node = cut.nodes[id];
-        for (const std::vector<CutEdge>* edges : {&node.edges, &node.stop_edges})
-            for (const CutEdge& edge : *edges)
+        DetailNode& node = cut.nodes[id];
+        for (const std::vector<DetailEdge>* edges : {&node.edges, &node.stop_edges})
+            for (const DetailEdge& edge : *edges)
                 users[edge.child].push_back(id);
         node.widens = node.sealed || node.shadowless;
         if (node.widens) wide.push_back(id);
@@ -47,15 +47,15 @@ void mark_wide(CutGraph& cut) {
 
 } // namespace
 
-PreparedCut prepare_cut(const Graph& graph, const Components& components,
-                        const std::vector<ObjectBounds>& bounds, const PrepareOptions& options,
-                        const Control& control, const PassObserver& after_each) {
+PreparedGraph prepare_graph(const Graph& graph, const Components& components,
+                            const std::vector<ObjectBounds>& bounds, const PrepareOptions& options,
+                            const Control& control, const PassObserver& after_each) {
     WorkMeter meter(control, "prepare", prepared_a_look);
     meter.charge(work_of_preparation(graph.objects.size(), instance_count(graph)));
-    PreparedCut prepared;
+    PreparedGraph prepared;
     BoundedGraph passed = run_passes(detail_passes(options.keeps_objects), {graph, bounds},
                                      {.stop_after = {}, .after_each = after_each}, nullptr, &meter);
-    CutGraph& cut = prepared.cut = build_cut_graph(std::move(passed.graph), passed.bounds, &meter);
+    DetailGraph& cut = prepared.cut = build_detail_graph(std::move(passed.graph), passed.bounds, &meter);
     if (!options.steps) drop_endings(cut);
     prepared.symmetry = find_symmetry(cut);
     meter.add(prepared.symmetry.comparisons);
@@ -80,13 +80,13 @@ bool refuse_endless(const Graph& graph, const Components& components, const Deta
     return true;
 }
 
-void note_shadowless(const CutGraph& cut, const Graph& graph, Diagnostics& diagnostics) {
-    const auto widens_proxy = [&](const CutEdge& edge) { // the root itself is always drawn whole
-        const CutNode& node = cut.nodes[edge.child];
+void note_shadowless(const DetailGraph& cut, const Graph& graph, Diagnostics& diagnostics) {
+    const auto widens_proxy = [&](const DetailEdge& edge) { // the root itself is always drawn whole
+        const DetailNode& node = cut.nodes[edge.child];
         return node.shadowless && node.cullable && !node.terminal;
     };
     if (std::ranges::none_of(
-            cut.nodes, [&](const CutNode& user) { return std::ranges::any_of(user.edges, widens_proxy); }))
+            cut.nodes, [&](const DetailNode& user) { return std::ranges::any_of(user.edges, widens_proxy); }))
         return;
     diagnostics
         .note(graph.objects[graph.root].span,
@@ -96,7 +96,7 @@ void note_shadowless(const CutGraph& cut, const Graph& graph, Diagnostics& diagn
                    "sphere below 4'");
 }
 
-double nearest_to_eye(const CutGraph& cut) {
+double nearest_to_eye(const DetailGraph& cut) {
     constexpr double share_of_radius = 1e-5;
     return share_of_radius * std::max(cut.nodes[cut.root].ball.radius, 1e-280);
 }

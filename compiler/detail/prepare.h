@@ -5,7 +5,7 @@
 
 #include "compiler/analysis/bounding.h"
 #include "compiler/detail/detail_options.h"
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/graph/symmetry.h"
 #include "compiler/detail/shell/store.h"
 #include "compiler/graph/components.h"
@@ -17,8 +17,8 @@ namespace graftal {
 
 /// A graph made ready to be unfolded for a view: what the cut and the tracer unfold alike, so that both draw
 /// the same parts.
-struct PreparedCut {
-    CutGraph cut;
+struct PreparedGraph {
+    DetailGraph cut;
     Symmetry symmetry;
     std::uint32_t root_steps = unlimited_steps; ///< levels that the root has
     Box bounds;                                 ///< of the limit set
@@ -29,9 +29,9 @@ struct PreparedCut {
 
 /// Runs the passes for detail, which `after_each` sees. Requires a verified graph whose contraction is proved
 /// or acyclic. O(graph).
-PreparedCut prepare_cut(const Graph& graph, const Components& components,
-                        const std::vector<ObjectBounds>& bounds, const PrepareOptions& options,
-                        const Control& control = no_control(), const PassObserver& after_each = {});
+PreparedGraph prepare_graph(const Graph& graph, const Components& components,
+                            const std::vector<ObjectBounds>& bounds, const PrepareOptions& options,
+                            const Control& control = no_control(), const PassObserver& after_each = {});
 
 /// True, after an error, if nothing says how deep the graph is to be unfolded.
 bool refuse_endless(const Graph& graph, const Components& components, const DetailOptions& options,
@@ -39,9 +39,9 @@ bool refuse_endless(const Graph& graph, const Components& components, const Deta
 
 /// Notes that parts of a set without area are drawn wider than they are (least_width.h). The note says how
 /// the model can give their look, where it does not. For models of which something is culled.
-void note_shadowless(const CutGraph& cut, const Graph& graph, Diagnostics& diagnostics);
+void note_shadowless(const DetailGraph& cut, const Graph& graph, Diagnostics& diagnostics);
 
 /// The least distance from the eye that counts (Projection), so that the eye may lie on the model.
-double nearest_to_eye(const CutGraph& cut);
+double nearest_to_eye(const DetailGraph& cut);
 
 } // namespace graftal

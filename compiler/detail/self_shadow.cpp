@@ -87,7 +87,7 @@ struct LitPoint {
 
 class Measurer {
   public:
-    Measurer(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps, const View& view,
+    Measurer(const DetailGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps, const View& view,
              bool limit_normals, std::uint64_t most_work)
         : most_work_(most_work), cut_(cut), view_(view),
           culled_projection_(projection(self_shadow_measured_px)),
@@ -204,7 +204,7 @@ class Measurer {
     }
 
     const std::uint64_t most_work_;
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     const View& view_;
     const Material plain_; ///< of parts that name none
     Projection culled_projection_, whole_projection_;
@@ -229,7 +229,7 @@ double SelfShadows::share_within(double outer, NodeId node, double detail, doubl
     return share(node, detail * error_px);
 }
 
-SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
+SelfShadows measure_self_shadows(const DetailGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
                                  const View& view, bool limit_normals, int steps, std::uint64_t most_work,
                                  const CancelFlag& cancel) {
     return Measurer(cut, symmetry, root_steps, view, limit_normals, most_work).run(steps, cancel);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/graph/symmetry.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/control.h"
@@ -53,7 +53,7 @@ inline constexpr std::uint64_t most_self_shadow_work = 8'000'000;
 /// stands for it. Nothing is measured without lights that throw shadows.
 ///
 /// Requires fit_proxies(). Work: at most `most_work` parts are gone by. The flag ends it by Cancelled.
-SelfShadows measure_self_shadows(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
+SelfShadows measure_self_shadows(const DetailGraph& cut, const Symmetry& symmetry, std::uint32_t root_steps,
                                  const View& view, bool limit_normals, int steps,
                                  std::uint64_t most_work = most_self_shadow_work,
                                  const CancelFlag& cancel = {});

@@ -38,13 +38,13 @@ constexpr int few_octaves = 5, many_octaves = 13;
 
 } // namespace
 
-Weights::Weights(const CutGraph& cut, const WeightOptions& options, const Control& control)
+Weights::Weights(const DetailGraph& cut, const WeightOptions& options, const Control& control)
     : cut_(cut), options_(options), meter_(control, "weights", visits_a_look), grain_(options.grain) {
     // A proxy's mesh is an octahedron.
     proxy_ = {8, 1, 0, price(PrimitiveKind::sphere)};
     diameter_step_.reserve(cut.nodes.size());
     cut_step_.reserve(cut.nodes.size());
-    for (const CutNode& node : cut.nodes) {
+    for (const DetailNode& node : cut.nodes) {
         diameter_step_.push_back(PieceKind::steps_of(2 * node.ball.radius));
         cut_step_.push_back(PieceKind::steps_of(cut_detail(node, options.error_px)) + 1e-6);
         flat_.push_back(is_flat(node));
@@ -63,7 +63,7 @@ bool Weights::is_cut(const PieceKind& kind) const {
 }
 
 PieceKind Weights::normalised(PieceKind kind) const {
-    const CutNode& node = cut_.nodes[kind.node];
+    const DetailNode& node = cut_.nodes[kind.node];
     kind = without_idle_levels(cut_, kind);
     if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return kind;
     // To the nearest, so that what is counted level by level does not drift.
@@ -90,7 +90,7 @@ std::int32_t Weights::mesh_bin(const PieceKind& kind) {
     return static_cast<std::int32_t>(std::lround(std::log2(std::clamp(weight.leaves, 1.0, 1e300))));
 }
 
-PieceKind Weights::child_kind(const PieceKind& parent, const CutEdge& edge) const {
+PieceKind Weights::child_kind(const PieceKind& parent, const DetailEdge& edge) const {
     PieceKind kind{edge.child, steps_below(parent.steps, edge), parent.unit_step};
     if (kind.unit_step != PieceKind::endless_detail && kind.unit_step != PieceKind::tiny) {
         // Products of stretches end only if every edge contracts; volumes always do.
@@ -118,7 +118,7 @@ Weights::Weight Weights::of_primitive(const PieceKind& asked) const {
 Weights::Weight Weights::of_cell(const PieceKind& kind, const EdgeCell& cell) {
     Weight sum;
     for (const EdgeCell::Alike& alike : cell.alike) {
-        CutEdge edge;
+        DetailEdge edge;
         edge.child = cell.source->child[alike.shape.index()];
         edge.stretch = edge.volume_stretch = std::exp2(0.25 * (alike.quarter_octave + 0.5));
         sum += alike.count * of_primitive(child_kind(kind, edge));
@@ -148,7 +148,7 @@ void Weights::squeeze(const PieceKind& kind, Weight& weight) const {
 /// A shell has as many triangles as its cells have faces outside.
 void Weights::crowd(const PieceKind& kind, Weight& weight) const {
     if (kind.unit_step == PieceKind::endless_detail || kind.unit_step == PieceKind::tiny) return;
-    const CutNode& node = cut_.nodes[kind.node];
+    const DetailNode& node = cut_.nodes[kind.node];
     if (node.sealed) weight.crowded = false; // crushed parts are baked as leaves
     if (node.primitive || node.unbounded || node.sealed) return;
     const double detail = std::exp2(detail_step(kind) / PieceKind::steps_an_octave);
@@ -190,7 +190,7 @@ ShellSizes Weights::shell_sizes(NodeId node, std::uint32_t steps) {
 }
 
 bool Weights::is_shell(const PieceKind& kind) {
-    const CutNode& node = cut_.nodes[kind.node];
+    const DetailNode& node = cut_.nodes[kind.node];
     if (node.primitive || node.unbounded || kind.unit_step == PieceKind::endless_detail ||
         kind.unit_step == PieceKind::tiny)
         return false;
@@ -232,7 +232,7 @@ bool Weights::weigh(std::uint32_t start) {
     while (!stack_.empty()) {
         Frame& frame = stack_.back();
         const PieceKind kind = known_[frame.number].kind;
-        const CutNode& node = cut_.nodes[kind.node];
+        const DetailNode& node = cut_.nodes[kind.node];
         const bool cut = is_cut(kind);
         const auto& edges = followed_edges(node, cut);
         if (node.cell && !cut) frame.sum = of_cell(kind, *node.cell);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/graph/piece_kind.h"
 #include "compiler/detail/shell/sizes.h"
 #include "compiler/support/control.h"
@@ -34,7 +34,7 @@ struct WeightOptions {
 class Weights {
   public:
     /// Keeps references to both.
-    explicit Weights(const CutGraph& cut, const WeightOptions& options = {},
+    explicit Weights(const DetailGraph& cut, const WeightOptions& options = {},
                      const Control& control = no_control());
 
     struct Weight {
@@ -84,7 +84,7 @@ class Weights {
     bool is_cut(const PieceKind& kind) const;
 
     /// The kind an edge leads to, without looking at where the piece lies.
-    PieceKind child_kind(const PieceKind& parent, const CutEdge& edge) const;
+    PieceKind child_kind(const PieceKind& parent, const DetailEdge& edge) const;
 
   private:
     struct Known {
@@ -110,7 +110,7 @@ class Weights {
         return options_.leaf_price ? options_.leaf_price(primitive) : 0;
     }
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     WeightOptions options_;
     WorkMeter meter_;
     Weight proxy_;

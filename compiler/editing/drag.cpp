@@ -32,7 +32,7 @@ constexpr double price_of_a_rule = 0.03;
 constexpr double price_of_large_changes = 0.05;
 /// A number is of use where it brings the point by this share nearer.
 constexpr double least_gain = 0.05;
-constexpr int most_steps = 6;
+constexpr int most_drag_steps = 6;
 
 /// A number of the text that may change.
 struct Candidate {
@@ -257,7 +257,7 @@ class Dragger {
     std::optional<DragChange> change_of(const Candidate& candidate) const {
         double value = candidate.value;
         Vec3 way(0.0), slope = candidate.slope;
-        for (int step = 0; step < most_steps; ++step) {
+        for (int step = 0; step < most_drag_steps; ++step) {
             const double by = along(slope, wanted_ - way);
             if (!(std::abs(by) * glm::length(slope) > least_gain * least_gain * glm::length(wanted_))) break;
             const std::optional<Vec3> next = moved(candidate, value + by);

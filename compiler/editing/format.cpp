@@ -166,6 +166,10 @@ class Formatter {
             begin = outline.end;
         }
         plan_tokens({0, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(text_.size())});
+        for (const LsysBlock& block : document_.lsys()->blocks)
+            for (const auto* productions : {&block.productions, &block.interpret, &block.decompose})
+                for (const LsysProduction& production : *productions)
+                    lay_out_arrow(production.successor.span);
     }
 
     void plan_outline(const LsysScanner& scanner, const LsysOutline& outline, std::size_t begin) {
@@ -177,12 +181,6 @@ class Formatter {
             at = std::max(at, statement.end);
         }
         plan_between(scanner, at, outline.end, depth);
-        for (const LsysBlock& block : document_.lsys()->blocks)
-            for (const auto* productions : {&block.productions, &block.interpret, &block.decompose})
-                for (const LsysProduction& production : *productions)
-                    if (const Span arrow = production.successor.span;
-                        arrow.begin >= begin && arrow.end <= outline.end)
-                        lay_out_arrow(arrow);
     }
 
     /// Comments, and the braces of sections.
@@ -297,7 +295,12 @@ class Formatter {
     std::vector<TextEdit> edits_;
 };
 
-/// The words of a text, with the white space that counts: that before a sign does.
+/// Whether a value may end with the token: a sign behind it may go on with that value.
+bool may_end_value(const Token& token) {
+    return token.kind != TokenKind::symbol || token.is(")") || token.is("]") || token.is(">");
+}
+
+/// The words of a text, with the white space that counts: that between a value and a sign.
 std::string meaning_of(const Document& document) {
     std::string words;
     const std::string_view text = document.text();
@@ -316,12 +319,14 @@ std::string meaning_of(const Document& document) {
         return words;
     }
     Diagnostics ignored;
+    bool after_value = false;
     for (const Token& token :
          lex_range(document.sources(), {0, 0, static_cast<std::uint32_t>(text.size())}, ignored)) {
         if (token.kind == TokenKind::end) break;
         const bool sign = token.is("-") || token.is("+") || token.is("<") || token.is("[");
-        words += token.first_on_line ? '\n' : sign && token.space_before ? ' ' : '\x01';
+        words += token.first_on_line ? '\n' : sign && after_value && token.space_before ? ' ' : '\x01';
         words += token.text;
+        after_value = may_end_value(token);
     }
     return words;
 }

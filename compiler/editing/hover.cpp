@@ -64,7 +64,17 @@ std::string language_of(const Document& document) {
     return document.language() ? std::string(document.language()->extension) : std::string();
 }
 
-/// The lines of a text in a fence; the middle of a long one is left out.
+/// A fence that no line of the text can close: a comment of a model is no Markdown.
+std::string fence_around(std::string_view text) {
+    std::size_t longest = 0, run = 0;
+    for (const char c : text) {
+        run = c == '`' ? run + 1 : 0;
+        longest = std::max(longest, run);
+    }
+    return std::string(std::max<std::size_t>(3, longest + 1), '`');
+}
+
+/// The lines of a text in a fence; the end of a long one is left out.
 std::string fenced(const Document& document, Span span) {
     constexpr std::size_t most = 400;
     std::string_view text = document.text(span);
@@ -73,7 +83,8 @@ std::string fenced(const Document& document, Span span) {
     if (cut)
         shown.resize(
             std::min(shown.size(), shown.rfind('\n') == std::string::npos ? most : shown.rfind('\n')));
-    return fmt::format("```{}\n{}{}\n```", language_of(document), shown, cut ? "\n..." : "");
+    const std::string fence = fence_around(shown);
+    return fmt::format("{0}{1}\n{2}{3}\n{0}", fence, language_of(document), shown, cut ? "\n..." : "");
 }
 
 /// The line that defines an object: from its first word to its '{'.

@@ -200,14 +200,23 @@ Place in_statement(const Document& document, const LsysBlock* block, const LsysS
     const std::size_t word_end = statement.begin + statement.word.size();
     if (offset <= word_end && (keyword || statement.word.size() > 1))
         return {{P::lsys_block}, false, true, false, {}, name_around(text, offset)};
-    int depth = 0;
-    for (std::size_t at = statement.begin; at < offset; ++at)
-        depth += (text[at] == '(') - (text[at] == ')');
-    const std::optional<std::size_t> arrow = scanner.find_arrow(statement.begin, statement.end);
-    const std::size_t colon = text.substr(0, statement.end).find(':', statement.begin);
-    const bool condition = arrow && offset < *arrow && colon < offset;
     const bool modules =
         !keyword || statement.word == "axiom" || statement.word == "ignore" || statement.word == "consider";
+    int depth = 0;
+    bool colon = false;
+    for (std::size_t at = statement.begin; at < offset; ++at) {
+        // In strings two slashes are turns.
+        const bool slashes = !modules || depth > 0;
+        if (text[at] == '#' || (slashes && text[at] == '/'))
+            if (const std::size_t end = scanner.comment_end(at); end > at) {
+                at = end - 1;
+                continue;
+            }
+        depth += (text[at] == '(') - (text[at] == ')');
+        colon = colon || text[at] == ':';
+    }
+    const std::optional<std::size_t> arrow = scanner.find_arrow(statement.begin, statement.end);
+    const bool condition = arrow && offset < *arrow && colon;
     std::size_t tilde = offset;
     while (tilde > statement.begin && (is_name_character(text[tilde - 1]) || text[tilde - 1] == '.'))
         --tilde;

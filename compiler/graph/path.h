@@ -1,8 +1,8 @@
 #pragma once
 
 // The algebra of paths: what holds at the end of a path from the root, given what held one edge before. All
-// walks follow edges by these rules, over the graph's instances and over what is made of them (CutEdge, and
-// the tracer's edges).
+// walks follow edges by these rules, over the graph's instances and over what is made of them (DetailEdge,
+// and the tracer's edges).
 
 #include <algorithm>
 #include <array>

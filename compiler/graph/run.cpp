@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "compiler/graph/packed_edges.h"
+#include "compiler/support/bounds.h"
 
 namespace graftal {
 
@@ -27,7 +30,80 @@ Vec3 unit_aside(const RunItem& item, Vec3 y) {
     return std::cos(angle) * x + std::sin(angle) * glm::cross(x, y);
 }
 
+/// Holds the item, and is hardly larger.
+Box box_about(const RunItem& item) {
+    Box box;
+    for (const Vec3& end : {item.base, item.base + item.axis}) {
+        box.include(end - Vec3(item.radius));
+        box.include(end + Vec3(item.radius));
+    }
+    return box;
+}
+
+double half_area(const Box& box) {
+    const Vec3 size = box.size();
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+/// Whether the items lie anyhow in `all`: ranges of them fill far more of it than cubes would that share it.
+bool are_scattered(const Run& run, Box& all) {
+    constexpr std::size_t items_a_range = 256;
+    constexpr double much = 4;
+    double sum = 0, ranges = 0;
+    for (std::size_t first = 0; first < run.size(); first += items_a_range, ++ranges) {
+        Box box;
+        for (std::size_t i = first; i < std::min(first + items_a_range, run.size()); ++i)
+            box.include(box_about(run[i]));
+        sum += half_area(box);
+        all.include(box);
+    }
+    return sum > much * half_area(all) * std::cbrt(ranges);
+}
+
+/// The lower 21 bits, each with two bits of 0 above it.
+std::uint64_t spread_bits(std::uint64_t bits) {
+    bits &= 0x1fffff;
+    bits = (bits | bits << 32) & 0x1f00000000ffff;
+    bits = (bits | bits << 16) & 0x1f0000ff0000ff;
+    bits = (bits | bits << 8) & 0x100f00f00f00f00f;
+    bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
+    return (bits | bits << 2) & 0x1249249249249249;
+}
+
+/// The place of a point of the box along Morton's curve.
+std::uint64_t place_on_curve(Vec3 point, const Box& box) {
+    constexpr double cells = 2097151; // 2^21 - 1
+    const double side = std::max({box.size().x, box.size().y, box.size().z});
+    std::uint64_t place = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double share = (point[axis] - box.min[axis]) / side;
+        const auto cell = static_cast<std::uint64_t>(share > 0 ? cells * std::min(share, 1.0) : 0);
+        place |= spread_bits(cell) << axis;
+    }
+    return place;
+}
+
 } // namespace
+
+void order_in_space(Run& run) {
+    Box all;
+    if (!are_scattered(run, all)) return;
+    std::vector<std::pair<std::uint64_t, std::size_t>> order(run.size());
+    for (std::size_t i = 0; i < run.size(); ++i)
+        order[i] = {place_on_curve(run[i].base + 0.5 * run[i].axis, all), i};
+    std::ranges::sort(order);
+    for (std::size_t first = 0; first < run.size(); ++first) { // one cycle after the other
+        const RunItem kept = run[first];
+        std::size_t to = first;
+        for (;;) {
+            const std::size_t from = std::exchange(order[to].second, to);
+            if (from == first) break;
+            run[to] = run[from];
+            to = from;
+        }
+        run[to] = kept;
+    }
+}
 
 RunShape::RunShape(const Primitive& primitive)
     : top_steps_(primitive == PrimitiveKind::frustum ? primitive.steps()

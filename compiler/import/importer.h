@@ -63,6 +63,10 @@ struct Translation {
         text += '\n';
         origins.push_back(origin);
     }
+    void append(const Translation& lines) {
+        text += lines.text;
+        origins.insert(origins.end(), lines.origins.begin(), lines.origins.end());
+    }
 };
 
 /// One format: a row of the table in importers.cpp. An importer drops nothing silently: what it cannot

@@ -23,6 +23,7 @@ class InstChance {
     explicit InstChance(const InstModule& module);
 
     bool is_random(std::string_view name) const { return random_.contains(name); }
+    bool has_random() const { return !random_.empty(); }
     /// Objects of this name may reach themselves, or a used model.
     bool may_recur(std::string_view name) const { return recurring_.contains(name); }
     /// The calls of `random` and `normal` in a group and its repeats, except those in the lines of a scatter.

@@ -12,6 +12,7 @@
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
 #include "compiler/support/stage_price.h"
+#include "compiler/syntax/write_out.h"
 
 namespace graftal {
 
@@ -96,7 +97,7 @@ std::optional<std::size_t> InstLowerer::repeat_count(const InstRepeat& repeat) {
     if (!count) return std::nullopt;
     const std::size_t most = lowering_.options.max_objects * max_instances_per_object;
     const double whole = std::floor(*count);
-    if (whole >= 1 && whole <= static_cast<double>(most) && (whole == *count || !draws_.empty()))
+    if (whole >= 1 && whole <= static_cast<double>(most) && (whole == *count || calls_chance(repeat.count)))
         return static_cast<std::size_t>(whole);
     scratch_
         .error(repeat.count.span, fmt::format("a repeat makes a whole number of copies, from 1 to {}, not {}",
@@ -203,6 +204,7 @@ void InstLowerer::lower_instances(const InstGroup& group, const Placement& aroun
 }
 
 void InstLowerer::lower_scattered(const InstGroup& group, Lowered& object) {
+    lowering_.notes.asks_chance = true;
     draw(group);
     const bool random = std::ranges::any_of(
         group.masters, [&](const InstReference& master) { return chance_.is_random(master.name); });
@@ -262,10 +264,11 @@ HueTurn InstLowerer::lower_hue(const Expression& hue) {
             .with_hint("360 degrees are one whole turn");
         return {};
     }
-    if (draws_.empty())
+    const bool random = calls_chance(hue);
+    if (!random)
         if (const std::optional<HueTurn> turn = exact_turn(*degrees)) return *turn;
     const HueTurn rounded = whole_degrees(*degrees);
-    if (draws_.empty() && rounded_.insert(&hue).second)
+    if (!random && rounded_.insert(&hue).second)
         diagnostics_
             .note(hue.span, fmt::format("the hue turns by {} degrees, not by {}",
                                         shortest(360 * rounded.turns()), shortest(*degrees)))
@@ -307,9 +310,11 @@ std::optional<ObjectId> InstLowerer::resolve(const InstReference& reference) {
             arguments.push_back(*value == 0 ? 0 : *value); // -0 and 0 are one argument
     if (arguments.size() < reference.arguments.size()) return std::nullopt;
     const std::string name = inst_object_name(reference.name, arguments);
+    const bool random = chance_.is_random(reference.name);
+    // Known objects first: a name may have thousands of patterns.
+    if (const auto found = by_name_.find(name); !random && found != by_name_.end()) return found->second;
     const InstDefinition* const definition = index_.match(reference.name, arguments, name);
-    if (definition && chance_.is_random(reference.name))
-        return variant_of(*definition, std::move(arguments), name, reference.span);
+    if (definition && random) return variant_of(*definition, std::move(arguments), name, reference.span);
     if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
     if (const std::optional<Primitive> plain = primitive_named(name))
         return by_name_[name] = primitive(*plain);
@@ -393,17 +398,16 @@ const InstDefinition* InstLowerer::choose(const InstDefinition& definition,
     const std::vector<const InstDefinition*> all = index_.alternatives(definition);
     std::vector<double> sums;
     double sum = 0;
-    Environment environment;
-    const InstDefinition* names = nullptr; // whose parameters the environment has
+    const InstDefinition* names = nullptr; // whose parameters choice_ has
     for (const InstDefinition* const one : all) {
         std::size_t words = 1 + one->weight->span.end - one->weight->span.begin;
         if (!names || !same_parameters(*names, *one)) {
-            words += names ? lets_.size() : 0;
-            environment = environment_of(*one, arguments);
+            words += one->parameters.size();
+            set_parameters(*one, arguments, choice_);
             names = one;
         }
         if (!reached_.empty() && !work(words)) return nullptr;
-        const std::optional<double> weight = evaluate(*one->weight, environment, scratch_);
+        const std::optional<double> weight = evaluate(*one->weight, choice_.values, scratch_);
         if (!weight) return nullptr;
         if (*weight < 0 || *weight > largest_size) {
             scratch_

@@ -70,7 +70,9 @@ InstLowerer::InstLowerer(const InstModule& module, Lowering& lowering)
       chance_(module_), seed_(lowering.options.seed.value_or(0)) {}
 
 std::optional<Graph> InstLowerer::run() && {
+    lowering_.notes.asks_chance |= chance_.has_random();
     lets_ = lower_lets(module_.scene, lowering_);
+    object_.values = choice_.values = lets_;
     inner_parameters(module_.scene, lets_, diagnostics_); // for its checks
     lower_settings(module_.scene, lets_, graph_, lowering_);
     for (MaterialId id = 0; id < graph_.materials.size(); ++id)
@@ -199,8 +201,8 @@ void InstLowerer::lower_object(std::size_t index) {
     place_ = 0;
     if (!work(definition.size + index_.patterns(definition.name, definition.parameters.size()).size()))
         return;
-    environment_ = environment_of(definition, reached_[index].arguments);
-    tests_.clear();
+    set_parameters(definition, reached_[index].arguments, object_);
+    if (!tests_.empty()) tests_ = {}; // clear() takes as long as that of the largest object
     Lowered lowered;
     for (const InstGroup& group : definition.groups)
         lower_group(group, lowered);
@@ -228,12 +230,20 @@ bool InstLowerer::work(std::size_t words) {
     return false;
 }
 
-Environment InstLowerer::environment_of(const InstDefinition& definition,
-                                        const std::vector<double>& arguments) const {
-    Environment environment = lets_;
-    for (std::size_t i = 0; i < definition.parameters.size(); ++i)
-        if (!definition.parameters[i].is_number()) environment[definition.parameters[i].name] = arguments[i];
-    return environment;
+void InstLowerer::set_parameters(const InstDefinition& definition, const std::vector<double>& arguments,
+                                 ObjectEnvironment& environment) const {
+    for (const std::string& name : environment.parameters) {
+        if (const auto let = lets_.find(name); let != lets_.end())
+            environment.values[name] = let->second;
+        else
+            environment.values.erase(name);
+    }
+    environment.parameters.clear();
+    for (std::size_t i = 0; i < definition.parameters.size(); ++i) {
+        if (definition.parameters[i].is_number()) continue;
+        environment.parameters.push_back(definition.parameters[i].name);
+        environment.values[definition.parameters[i].name] = arguments[i];
+    }
 }
 
 void InstLowerer::keep_colours(ObjectId id, Lowered lowered) {

@@ -111,6 +111,8 @@ class ScatterLowerer {
         if (!text) return otherwise;
         const std::optional<double> from = number(text->from, keyword, good, demand);
         const std::optional<double> to = text->to ? number(text->to, keyword, good, demand) : from;
+        if (from && to && !std::isfinite(*to - *from))
+            diagnostics_.error(text->span, fmt::format("the ends of this '{}' lie too far apart", keyword));
         return {from.value_or(otherwise.from), to.value_or(otherwise.to)};
     }
 
@@ -192,11 +194,11 @@ class ScatterLowerer {
         const std::optional<FlatArea> within = lower_over();
         if (!within || !good) return std::nullopt;
         area.within = *within;
-        if (area.size() >= least_share * within->size()) return area;
+        const double size = area.size(context_.meter);
+        if (size >= least_share * within->size()) return area;
         diagnostics_
-            .error(scatter_.over->span, area.size() > 0
-                                            ? "the exceptions leave less than a hundredth of this area"
-                                            : "the exceptions leave nothing of this area")
+            .error(scatter_.over->span, size > 0 ? "the exceptions leave less than a hundredth of this area"
+                                                 : "the exceptions leave nothing of this area")
             .with_note(scatter_.except.front().span, "this exception");
         return std::nullopt;
     }
@@ -234,9 +236,10 @@ class ScatterLowerer {
 
     std::optional<std::vector<Vec2>> choose_points(const ScatterArea& area) {
         const auto count = static_cast<std::size_t>(count_.value_or(static_cast<double>(context_.most) + 1));
-        const double apart = apart_.value_or(loose_distance(area.size(), count));
+        const double size = area.size(context_.meter);
+        const double apart = apart_.value_or(loose_distance(size, count));
         // Where no more fit, the discs of this radius around the places cover the area.
-        const double at_least = area.size() / apart / apart / std::numbers::pi;
+        const double at_least = size / apart / apart / std::numbers::pi;
         if (!count_ && at_least > static_cast<double>(context_.most)) return refuse_fill();
         std::vector<Vec2> points = points_by_order(area, count, apart);
         if (count_ && points.size() < count) return refuse_places(points.size(), apart);
@@ -260,7 +263,7 @@ class ScatterLowerer {
         case ScatterOrder::jitter:
             return jittered_points(area, count, random_.sequence(places), context_.meter);
         case ScatterOrder::spiral:
-            return spiral_points(area, count);
+            return spiral_points(area, count, context_.meter);
         case ScatterOrder::poisson:
             break;
         }

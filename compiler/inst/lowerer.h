@@ -51,6 +51,12 @@ class InstLowerer {
         void add(Instance instance, const Placement& placement);
     };
 
+    /// The lets of the file, and the parameters of one object, which hide lets of their names.
+    struct ObjectEnvironment {
+        Environment values;
+        std::vector<std::string> parameters;
+    };
+
     /// An object of the file and how it was first reached.
     struct Reached {
         ObjectId id = 0;
@@ -119,7 +125,10 @@ class InstLowerer {
     bool work(std::size_t words);
     /// Counts a copy that the repeats of a group make; too many are an error at these repeats.
     bool copy_work(const InstGroup& group);
-    Environment environment_of(const InstDefinition& definition, const std::vector<double>& arguments) const;
+    /// Gives the environment of an object the parameters of another. O(parameters), however many lets there
+    /// are.
+    void set_parameters(const InstDefinition& definition, const std::vector<double>& arguments,
+                        ObjectEnvironment& environment) const;
     /// Hands on the errors of one object. Its definition is then left alone: for other arguments the same
     /// errors would follow.
     void report(std::size_t index);
@@ -188,10 +197,11 @@ class InstLowerer {
     InkTable inks_;
 
     std::vector<Reached> reached_;
-    std::size_t current_ = 0; ///< the index of the object being lowered
-    std::uint64_t place_ = 0; ///< places of it that have random numbers so far
-    Environment environment_; ///< of the object being lowered
-    ChanceDraws draws_;       ///< of the copy of a group being lowered
+    std::size_t current_ = 0;           ///< the index of the object being lowered
+    std::uint64_t place_ = 0;           ///< places of it that have random numbers so far
+    ObjectEnvironment object_, choice_; ///< of the object being lowered, and of one that may be chosen
+    const Environment& environment_ = object_.values;
+    ChanceDraws draws_; ///< of the copy of a group being lowered
     std::unordered_map<const InstTest*, bool>
         tests_;           ///< of the object being lowered, as far as they were asked
     Diagnostics scratch_; ///< its errors

@@ -21,7 +21,15 @@ constexpr int candidates = 60;
 constexpr int most_attempts = 120;
 constexpr int samples_a_side = 256;
 
-/// Draws one after the other, which a meter counts.
+/// Areas that a point is held against in the time of a random number.
+constexpr double areas_a_draw = 8;
+
+/// Counts a point that is held against an area, and against each of those that are left out.
+void count_point(const ScatterArea& area, WorkMeter* meter) {
+    if (meter) meter->add(1, StagePrice::draw / areas_a_draw * static_cast<double>(1 + area.without.size()));
+}
+
+/// Draws one after the other, which a meter counts, as it does the places that they make.
 class Draws {
   public:
     Draws(CounterRandom random, WorkMeter* meter) : stream_(random), meter_(meter) {}
@@ -30,6 +38,11 @@ class Draws {
         if (meter_) meter_->add(1, StagePrice::draw);
         return stream_.unit();
     }
+    bool lies_in(const ScatterArea& area, Vec2 p) {
+        if (!area.without.empty()) count_point(area, meter_);
+        return area.contains(p);
+    }
+    double size_of(const ScatterArea& area) { return area.size(meter_); }
     Vec2 in_square() {
         const double x = unit();
         return {x, unit()};
@@ -100,10 +113,10 @@ class NearGrid {
 };
 
 void throw_darts(const ScatterArea& area, std::size_t count, Draws& draws, NearGrid& grid) {
-    const double enough = most_misses * area.within.size() / area.size();
+    const double enough = most_misses * area.within.size() / draws.size_of(area);
     for (double misses = 0; misses < enough && grid.points().size() < count;) {
         const Vec2 p = draws.in(area.within);
-        const bool hit = area.contains(p) && grid.free(p);
+        const bool hit = draws.lies_in(area, p) && grid.free(p);
         misses = hit ? 0 : misses + 1;
         if (hit) grid.add(p);
     }
@@ -117,7 +130,7 @@ void fill_gaps(const ScatterArea& area, std::size_t count, double apart, Draws& 
             const double square = offset.x * offset.x + offset.y * offset.y;
             if (square < 1 || square > 4) continue;
             const Vec2 p = grid.points()[i] + apart * offset;
-            if (area.contains(p) && grid.free(p)) grid.add(p);
+            if (draws.lies_in(area, p) && grid.free(p)) grid.add(p);
         }
 }
 
@@ -141,7 +154,7 @@ std::vector<Vec2> jittered_lattice(const ScatterArea& area, double cells, Draws 
     for (double y = 0; y < rows; ++y)
         for (double x = 0; x < columns; ++x) {
             const Vec2 p = area.within.low + (Vec2(x, y) + draws.in_square()) * cell;
-            if (area.contains(p)) points.push_back(p);
+            if (draws.lies_in(area, p)) points.push_back(p);
         }
     return points;
 }
@@ -154,7 +167,8 @@ Vec2 turned(Vec2 a, Vec2 by) {
 }
 
 /// The places of a spiral, each with `each` of the area to itself, that lie in the area; at most `count`.
-std::vector<Vec2> spiral(const ScatterArea& area, std::size_t count, double each) {
+/// Over a long strip hardly any does.
+std::vector<Vec2> spiral(const ScatterArea& area, std::size_t count, double each, WorkMeter* meter) {
     const FlatArea& within = area.within;
     const double reach = within.disc ? within.radius : glm::length(0.5 * (within.high - within.low));
     const double step = std::sqrt(each / std::numbers::pi);
@@ -162,6 +176,7 @@ std::vector<Vec2> spiral(const ScatterArea& area, std::size_t count, double each
     Vec2 direction(1, 0);
     for (double i = 0; step * std::sqrt(i + 0.5) <= reach && points.size() < count; ++i) {
         const Vec2 p = within.centre + step * std::sqrt(i + 0.5) * direction;
+        count_point(area, meter);
         if (area.contains(p)) points.push_back(p);
         direction = turned(direction, golden_turn);
     }
@@ -175,13 +190,14 @@ bool ScatterArea::contains(Vec2 p) const {
            std::ranges::none_of(without, [&](const FlatArea& area) { return area.contains(p); });
 }
 
-double ScatterArea::size() const {
+double ScatterArea::size(WorkMeter* meter) const {
     if (without.empty()) return within.size();
     int inside = 0, left = 0;
     for (int y = 0; y < samples_a_side; ++y)
         for (int x = 0; x < samples_a_side; ++x) {
             const Vec2 p =
                 within.low + (Vec2(x, y) + 0.5) / double{samples_a_side} * (within.high - within.low);
+            count_point(*this, meter);
             inside += within.contains(p);
             left += contains(p);
         }
@@ -205,11 +221,11 @@ std::vector<Vec2> uniform_points(const ScatterArea& area, std::size_t count, Cou
                                  WorkMeter* meter) {
     Draws draws(random, meter);
     std::vector<Vec2> points;
-    const double share = area.size() / area.within.size();
+    const double share = area.size(meter) / area.within.size();
     const double most_tries = 100 + 10 * static_cast<double>(count) / share;
     for (double tries = 0; tries < most_tries && points.size() < count; ++tries) {
         const Vec2 p = draws.in(area.within);
-        if (area.contains(p)) points.push_back(p);
+        if (draws.lies_in(area, p)) points.push_back(p);
     }
     return points;
 }
@@ -217,7 +233,7 @@ std::vector<Vec2> uniform_points(const ScatterArea& area, std::size_t count, Cou
 std::vector<Vec2> jittered_points(const ScatterArea& area, std::size_t count, CounterRandom random,
                                   WorkMeter* meter) {
     const Vec2 extent = area.within.high - area.within.low;
-    double cells = static_cast<double>(count) * extent.x * extent.y / area.size();
+    double cells = static_cast<double>(count) * extent.x * extent.y / area.size(meter);
     for (std::uint64_t attempt = 0; attempt < most_attempts; ++attempt, cells *= 1.02) {
         const std::vector<Vec2> points =
             jittered_lattice(area, cells, Draws(random.sequence(2 * attempt), meter));
@@ -227,11 +243,11 @@ std::vector<Vec2> jittered_points(const ScatterArea& area, std::size_t count, Co
     return {};
 }
 
-std::vector<Vec2> spiral_points(const ScatterArea& area, std::size_t count) {
-    double each = area.size() / static_cast<double>(count);
+std::vector<Vec2> spiral_points(const ScatterArea& area, std::size_t count, WorkMeter* meter) {
+    double each = area.size(meter) / static_cast<double>(count);
     std::vector<Vec2> points;
     for (int attempt = 0; attempt < most_attempts && points.size() < count; ++attempt, each *= 0.98)
-        points = spiral(area, count, each);
+        points = spiral(area, count, each, meter);
     return points;
 }
 

@@ -80,7 +80,9 @@ LoweredText lower_text(const std::string& name, std::string text, const LowerOpt
                                   {options.root, help.files, options.seed.value_or(0)}, &meter);
     }
     if (!own) return {};
-    return lower_root(*own, name, options, sources, diagnostics, help);
+    LoweredText lowered = lower_root(*own, name, options, sources, diagnostics, help);
+    lowered.notes.asks_chance |= *own != file; // translators choose by the seed
+    return lowered;
 }
 
 } // namespace graftal

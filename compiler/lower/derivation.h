@@ -22,6 +22,7 @@ struct Derivation {
     std::string way;               ///< "composed" part by part, or "derived" and then shared
     std::optional<unsigned> steps; ///< nothing: infinite
     bool timed = false;            ///< the drawing reads the time
+    bool grows = false;            ///< after other steps it may be another
     double time = 0;               ///< the steps, and what share of the next had passed
     std::string modules;           ///< of the word after these steps: decimal, exact
     std::string segments;          ///< drawn segments

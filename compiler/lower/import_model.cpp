@@ -57,17 +57,23 @@ bool check_chain(Span use_span, const std::string& path, Lowering& lowering) {
     return true;
 }
 
-Status check_regular(const std::string& path, const Lowering& lowering) {
+bool leads_out(const std::string& path, const Lowering& lowering) {
     const std::string& root = lowering.options.root;
-    const Files& files = *lowering.help.files;
-    // Asked first: of files outside nobody learns whether they are there.
-    if (!root.empty() && !files.lies_in(path, root))
-        return Status::failure(fmt::format("'{}' leads out of the root folder '{}'", path, root));
-    return files.check(path);
+    return !root.empty() && !lowering.help.files->lies_in(path, root);
 }
 
-/// The hint for a file that is not there.
-std::string missing_hint(const Status& status) {
+Status check_regular(const std::string& path, const Lowering& lowering) {
+    // Asked first: of files outside nobody learns whether they are there.
+    if (leads_out(path, lowering))
+        return Status::failure(
+            fmt::format("'{}' leads out of the root folder '{}'", path, lowering.options.root));
+    return lowering.help.files->check(path);
+}
+
+/// The hint for a file that is not there, or may not be read.
+std::string missing_hint(const Status& status, const std::string& path, const Lowering& lowering) {
+    if (leads_out(path, lowering))
+        return "start 'graftal studio' in a folder above both files, or name such a folder with --root";
     return status.message().starts_with("cannot open")
                ? "paths begin in the folder of the file that names them: put it there, or write the way to it"
                : "";
@@ -82,7 +88,9 @@ std::optional<FileId> read_file(Span use_span, const std::string& path, Lowering
     if (read.ok())
         return lowering.files[path] =
                    lowering.sources.add(path, lowering.help.translator.model_text(path, std::move(text)));
-    add_chain(lowering.diagnostics.error(use_span, read.message()).with_hint(missing_hint(read)), lowering);
+    add_chain(
+        lowering.diagnostics.error(use_span, read.message()).with_hint(missing_hint(read, path, lowering)),
+        lowering);
     return std::nullopt;
 }
 
@@ -99,6 +107,7 @@ std::optional<FileId> read_used(Span use_span, const std::string& path, Lowering
         file = translator.own_text(
             *file, parts.model, lowering.sources, lowering.diagnostics,
             {lowering.options.root, lowering.help.files, lowering.options.seed.value_or(0)}, &lowering.meter);
+    if (file && lowering.sources.original(*file)) lowering.notes.asks_chance = true; // translators choose
     return lowering.own_texts[path] = file;
 }
 
@@ -180,7 +189,7 @@ std::unordered_map<Primitive, ObjectId> primitives_of(const Graph& from, const G
 /// `known`: objects of `into` that may stand for those of `from` that would have their names.
 ObjectId append_objects(Graph& into, const Graph& from, std::string_view prefix,
                         const std::vector<MaterialId>& materials,
-                        const std::unordered_map<std::string, ObjectId>& known = {}) {
+                        const std::unordered_map<std::string, ObjectId>& known) {
     const std::size_t before = into.objects.size();
     std::unordered_map<Primitive, ObjectId> primitives = primitives_of(from, into);
     std::vector<ObjectId> ids;
@@ -230,14 +239,19 @@ std::string free_prefix(const Graph& graph, std::string_view name) {
     return fmt::format("{}{}", stem, last + 1);
 }
 
-void charge_copy(const Graph& model, Lowering& lowering) {
-    lowering.meter.add(model.objects.size(), StagePrice::copied_object);
-    lowering.meter.add(instance_count(model), StagePrice::copied_instance);
-}
-
-bool has_room(const Graph& into, const Graph& model, Span span, Lowering& lowering) {
-    return within_limits(into.objects.size() + model.objects.size(),
-                         instance_count(into) + instance_count(model), span, lowering);
+/// Appends what load() gave; nothing where it gave none, or there is no room. A member of a family has a
+/// prefix of its own. `known`: see append_objects().
+std::optional<ObjectId> append(Graph& into, const std::shared_ptr<const Graph>& model,
+                               const UseStatement& use, bool is_member,
+                               const std::unordered_map<std::string, ObjectId>& known, Lowering& lowering) {
+    if (!model || !within_limits(into.objects.size() + model->objects.size(),
+                                 instance_count(into) + instance_count(*model), use.path_span, lowering))
+        return std::nullopt;
+    lowering.meter.add(model->objects.size(), StagePrice::copied_object);
+    lowering.meter.add(instance_count(*model), StagePrice::copied_instance);
+    const std::string name(use.name.text);
+    return append_objects(into, *model, is_member ? free_prefix(into, name) : name,
+                          append_materials(into, *model, name, is_member), known);
 }
 
 } // namespace
@@ -247,7 +261,8 @@ std::optional<std::string> find_beside(Span name_span, std::string_view path, Lo
     std::string found = path_named_at(name_span, path, lowering.sources);
     const Status regular = check_regular(found, lowering);
     if (regular.ok()) return found;
-    add_chain(lowering.diagnostics.error(name_span, regular.message()).with_hint(missing_hint(regular)),
+    add_chain(lowering.diagnostics.error(name_span, regular.message())
+                  .with_hint(missing_hint(regular, found, lowering)),
               lowering);
     return std::nullopt;
 }
@@ -310,19 +325,12 @@ std::optional<FileId> read_model(const UseStatement& use, Lowering& lowering) {
 }
 
 std::optional<ObjectId> import_model(Graph& into, const UseStatement& use, Lowering& lowering) {
-    const std::shared_ptr<const Graph> model = load(use, {}, {}, lowering);
-    if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
-    charge_copy(*model, lowering);
-    return append_objects(into, *model, use.name.text, append_materials(into, *model, use.name.text, false));
+    return append(into, load(use, {}, {}, lowering), use, false, {}, lowering);
 }
 
 std::optional<ObjectId> import_member(Graph& into, const UseStatement& use, const Environment& inner,
                                       Lowering& lowering) {
-    const std::shared_ptr<const Graph> model = load(use, inner, {}, lowering);
-    if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
-    charge_copy(*model, lowering);
-    return append_objects(into, *model, free_prefix(into, use.name.text),
-                          append_materials(into, *model, use.name.text, true));
+    return append(into, load(use, inner, {}, lowering), use, true, {}, lowering);
 }
 
 std::optional<ObjectId> import_part(Graph& into, const std::unordered_map<std::string, ObjectId>& known,
@@ -334,11 +342,7 @@ std::optional<ObjectId> import_part(Graph& into, const std::unordered_map<std::s
         file ? language_of(*file, lowering.sources, lowering.languages) : nullptr;
     lowering.part_missing = !language || language->extension != "inst";
     if (lowering.part_missing) return std::nullopt;
-    const std::shared_ptr<const Graph> model = load(use, {}, part, lowering);
-    if (!model || !has_room(into, *model, use.path_span, lowering)) return std::nullopt;
-    charge_copy(*model, lowering);
-    return append_objects(into, *model, use.name.text, append_materials(into, *model, use.name.text, false),
-                          known);
+    return append(into, load(use, {}, part, lowering), use, false, known, lowering);
 }
 
 } // namespace graftal

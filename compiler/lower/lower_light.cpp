@@ -1,7 +1,6 @@
 #include "compiler/lower/lower_light.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "compiler/light/blackbody.h"
 #include "compiler/light/sky_light.h"
@@ -67,9 +66,8 @@ void lower_turn(const SceneFields& fields, SkySetting& sky) {
         return fields.error("turn", "'turn' turns an 'environment' or 'clouds', but this sky has none");
     constexpr double most_turn_deg = 36'000;
     sky.turn_deg = fields
-                       .number(
-                           "turn", [](double x) { return std::abs(x) <= most_turn_deg; },
-                           fmt::format("lie within {} degrees", shortest(most_turn_deg)))
+                       .number("turn", between(-most_turn_deg, most_turn_deg),
+                               fmt::format("lie within {} degrees", shortest(most_turn_deg)))
                        .value_or(0);
 }
 
@@ -112,11 +110,7 @@ LightSetting lower_light(const SceneFields& fields) {
     if (const std::optional<double> kelvin = fields.temperature("temperature"))
         light.rgb *= blackbody_rgb(*kelvin);
     light.rgb *= fields.brightness("brightness").value_or(1);
-    light.angle_deg = fields
-                          .number(
-                              "angle", [](double x) { return x >= 0 && x <= most_sun_angle_deg; },
-                              fmt::format("lie between 0 and {} degrees", most_sun_angle_deg))
-                          .value_or(0);
+    light.angle_deg = fields.within("angle", 0, most_sun_angle_deg, " degrees").value_or(0);
     if (fields.flag("angle") && !light.sun)
         fields.error("angle", "'angle' is the apparent diameter of a sun; this light has a location");
     if (light.angle_deg > 0 && light.shadowless)
@@ -133,17 +127,15 @@ SkySetting lower_sky(const SceneFields& fields, Lowering& lowering) {
     if (zenith && !fields.flag("clear")) sky.horizon = sky.below = *zenith;
     sky.horizon = fields.light_color("horizon").value_or(sky.horizon);
     sky.below = fields.light_color("below").value_or(sky.below);
-    sky.turbidity = fields.number(
-        "clear", [](double x) { return x >= ClearSky::least_turbidity && x <= ClearSky::most_turbidity; },
-        fmt::format("lie between {} (pure air) and {} (haze)", ClearSky::least_turbidity,
-                    ClearSky::most_turbidity));
+    sky.turbidity = fields.number("clear", between(ClearSky::least_turbidity, ClearSky::most_turbidity),
+                                  fmt::format("lie between {} (pure air) and {} (haze)",
+                                              ClearSky::least_turbidity, ClearSky::most_turbidity));
     for (const char* const colour : {"zenith", "horizon"})
         if (fields.flag(colour) && fields.flag("clear"))
             fields.error(colour, fmt::format("a clear sky has its own colours; leave out '{}'", colour));
     sky.brightness = fields.brightness("brightness").value_or(1);
     sky.bounces = fields.whole("bounces", 0, most_bounces).value_or(0);
-    sky.clouds = fields.number(
-        "clouds", [](double x) { return x >= 0 && x <= 1; }, "lie between 0 (none) and 1 (an overcast sky)");
+    sky.clouds = fields.number("clouds", between(0, 1), "lie between 0 (none) and 1 (an overcast sky)");
     lower_turn(fields, sky);
     lower_environment(fields, lowering, sky);
     if (fields.empty())
@@ -162,9 +154,7 @@ HazeSetting lower_haze(const SceneFields& fields) {
     haze.base = fields.coordinate("base").value_or(0);
     haze.height = fields.size("height");
     haze.rgb = fields.light_color("color");
-    const auto is_share = [](double value) { return value >= 0 && value <= 1; };
-    haze.sun =
-        fields.number("sun", is_share, "lie between 0 and 1, the whole of the haze's light").value_or(0);
+    haze.sun = fields.within("sun", 0, 1, ", the whole of the haze's light").value_or(0);
     return haze;
 }
 

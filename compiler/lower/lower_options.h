@@ -92,6 +92,7 @@ struct LowerNotes {
     std::map<std::string, FileStamp> meshes = {}; ///< by path: the files of meshes, as they were when read
     std::vector<ModelParameter> parameters = {};  ///< of the root model, in the order of its text
     bool limited_by_work = false;                 ///< with more work allowed the graph would be another
+    bool asks_chance = false;                     ///< with another seed the graph may be another
 };
 
 } // namespace graftal

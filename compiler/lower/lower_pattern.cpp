@@ -30,12 +30,9 @@ class LayerReader {
         : fields_(fields), number_(number), diagnostics_(diagnostics) {}
 
     void read(PatternLayer& layer) const {
-        const auto between = [](double least, double most) {
-            return [=](double x) { return x >= least && x <= most; };
-        };
         layer.scale = fields_.size(name("scale")).value_or(layer.scale);
         layer.octaves = fields_.whole(name("octaves"), 1, SolidPattern::most_octaves).value_or(layer.octaves);
-        layer.warp = fields_.number(name("warp"), between(0, 4), "lie between 0 and 4").value_or(layer.warp);
+        layer.warp = fields_.within(name("warp"), 0, 4).value_or(layer.warp);
         if (const SceneField* stretch = fields_.find(name("stretch"))) {
             const auto factors = lower_vector(stretch->values, fields_.lets(), diagnostics_);
             const auto good = between(1e-3, 1e3);
@@ -119,8 +116,7 @@ void lower_pattern(const SceneFields& fields, Diagnostics& diagnostics, Material
     if (word || fields.flag("color")) take_own_colours(material);
     pattern.low = fields.color("low").value_or(pattern.low);
     pattern.high = fields.color("high").value_or(pattern.high);
-    const auto good = [](double x) { return x >= -10 && x <= 10; };
-    pattern.bump = fields.number("bump", good, "lie between -10 and 10").value_or(pattern.bump);
+    pattern.bump = fields.within("bump", -10, 10).value_or(pattern.bump);
 }
 
 } // namespace graftal

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,7 +21,7 @@ namespace {
 
 using Kind = SceneStatement::Kind;
 
-constexpr double most_steps = 1e9;
+constexpr unsigned most_steps = 1'000'000'000;
 constexpr unsigned most_around = 1000;
 constexpr std::size_t most_candidate_materials = 1000;
 
@@ -172,18 +173,6 @@ Material lower_material(const SceneFields& fields, const SceneStatement& stateme
     return material;
 }
 
-constexpr const char* steps_demand = "be a whole number between 0 and 1000000000";
-
-bool are_steps(double x) {
-    return x >= 0 && x <= most_steps && x == std::floor(x);
-}
-
-std::optional<unsigned> lower_steps(const SceneFields& fields) {
-    const std::optional<double> steps = fields.number("steps", are_steps, steps_demand);
-    if (!steps) return std::nullopt;
-    return static_cast<unsigned>(*steps);
-}
-
 /// Statements that may occur once, and materials once a name.
 void check_duplicates(const std::vector<SceneStatement>& statements, Diagnostics& diagnostics) {
     std::map<std::pair<Kind, std::string>, Span> first;
@@ -219,13 +208,30 @@ std::optional<double> set_value(std::string_view setting, const Environment& let
 }
 
 void check_set_names(const Environment& known_lets, const std::vector<std::string>& settings,
-                     Lowering& lowering) {
+                     const std::vector<SceneStatement>& statements, Lowering& lowering) {
     std::vector<std::string> known;
     for (const auto& [name, value] : known_lets)
         known.push_back(name);
     known.insert(known.end(), settings.begin(), settings.end());
+    const auto is_known = [&](std::string_view name) {
+        return std::find(known.begin(), known.end(), name) != known.end();
+    };
+    std::set<std::string> reported;
+    for (const SceneStatement& statement : statements) {
+        if (statement.kind != Kind::preset) continue;
+        for (const SceneField& field : statement.fields) {
+            const bool taken = lowering.options.preset == statement.name; // then the values are known already
+            if (!taken && !field.values.empty()) evaluate(field.values[0], {}, lowering.diagnostics);
+            if (is_known(field.keyword)) continue;
+            reported.insert(field.keyword);
+            lowering.diagnostics
+                .error(field.span, fmt::format("preset '{}': the model has no 'let {}' to set",
+                                               statement.name, field.keyword))
+                .with_hint(choices(field.keyword, known));
+        }
+    }
     for (const auto& [name, value] : lowering.options.set) {
-        if (std::find(known.begin(), known.end(), name) == known.end())
+        if (!is_known(name) && !reported.contains(name))
             lowering.diagnostics.error(Span(), fmt::format("the model has no 'let {}' to set", name))
                 .with_hint(choices(name, known));
         if (!std::isfinite(value))
@@ -285,7 +291,7 @@ Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environ
 
 Environment lower_lets(const std::vector<SceneStatement>& statements, Lowering& lowering) {
     Environment lets = evaluate_lets(statements, {}, lowering, lowering.loading.back().inner);
-    if (lowering.at_root_model()) check_set_names(lets, {"steps"}, lowering);
+    if (lowering.at_root_model()) check_set_names(lets, {"steps"}, statements, lowering);
     return lets;
 }
 
@@ -341,7 +347,7 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
                 lowering));
             break;
         case Kind::steps:
-            graph.settings.steps = lower_steps(fields);
+            graph.settings.steps = fields.whole("steps", 0, most_steps);
             break;
         case Kind::sky:
             graph.settings.sky = lower_sky(fields, lowering);
@@ -360,11 +366,12 @@ void lower_settings(const std::vector<SceneStatement>& statements, const Environ
     }
     check_suns(statements, graph.settings, lowering.diagnostics);
     if (const std::optional<double> steps = set_value("steps", lets, lowering)) {
-        if (are_steps(*steps))
+        if (whole_between(0, most_steps)(*steps))
             graph.settings.steps = static_cast<unsigned>(*steps);
         else
             lowering.diagnostics.error(
-                Span(), fmt::format("'steps' as it is set must {}, not {}", steps_demand, shortest(*steps)));
+                Span(), fmt::format("'steps' as it is set must be a whole number between 0 and {}, not {}",
+                                    most_steps, shortest(*steps)));
     }
     for (const SceneStatement& statement : statements)
         for (const SceneField& field : statement.fields)

@@ -20,8 +20,10 @@ void note_parameter(ModelParameter::Kind kind, const std::string& name, const Ex
 /// names are known. `inner`: values of inner parameters, by name, in place of their own.
 Environment evaluate_lets(const std::vector<SceneStatement>& statements, Environment outer,
                           Lowering& lowering, const Environment& inner = {});
-/// Reports names of `--set` that are neither among `known` nor of `settings`.
-void check_set_names(const Environment& known, const std::vector<std::string>& settings, Lowering& lowering);
+/// Reports names of `--set`, and of the presets among the statements, that are neither among `known` nor of
+/// `settings`; and values of presets that are no numbers.
+void check_set_names(const Environment& known, const std::vector<std::string>& settings,
+                     const std::vector<SceneStatement>& statements, Lowering& lowering);
 /// The value that `--set` gives a setting of the root model; a `let` of that name comes first.
 std::optional<double> set_value(std::string_view setting, const Environment& lets, const Lowering& lowering);
 

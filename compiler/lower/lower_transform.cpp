@@ -128,7 +128,7 @@ std::optional<Affine> rotation(const TransformLine& line, const Numbers& n, Diag
     if (!line.axes.empty()) return Affine::rotate(axis_vector(line.axes[0]), n[0]);
     const Vec3 axis(n[0], n[1], n[2]);
     // The largest component first, so that neither tiny nor huge axes leave the range of doubles.
-    const double largest = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
+    const double largest = largest_entry(axis);
     if (largest > 0) return Affine::rotate(axis / largest, n[3]);
     diagnostics.error(line.span, "the axis of this rotation has no direction");
     return std::nullopt;

@@ -20,24 +20,27 @@ namespace graftal {
 
 inline constexpr double most_brightness = 1e6; // half floats of POV-Ray's pictures end at 65504
 
+/// Whether a number lies between two, or is one of them.
+inline auto between(double least, double most) {
+    return [=](double x) { return x >= least && x <= most; };
+}
+inline auto whole_between(double least, double most) {
+    return [=](double x) { return x >= least && x <= most && x == std::floor(x); };
+}
+
 /// One statement's fields by name, each evaluated and checked on demand.
 class SceneFields {
   public:
     SceneFields(const SceneStatement& statement, const Environment& lets, Diagnostics& diagnostics)
         : statement_(statement), lets_(lets), diagnostics_(diagnostics) {
-        for (auto field = statement.fields.begin(); field != statement.fields.end(); ++field) {
-            const auto first = std::find_if(statement.fields.begin(), field, [&](const SceneField& other) {
-                return other.keyword == field->keyword;
-            });
-            if (first == field) continue;
-            diagnostics.error(field->span, fmt::format("duplicate '{}'", field->keyword))
-                .with_note(first->span, "first given here");
-        }
+        for (const SceneField& field : statement.fields)
+            if (const SceneField* const first = find(field.keyword); first != &field)
+                diagnostics.error(field.span, fmt::format("duplicate '{}'", field.keyword))
+                    .with_note(first->span, "first given here");
     }
 
     const SceneField* find(std::string_view keyword) const {
-        const auto found = std::find_if(statement_.fields.begin(), statement_.fields.end(),
-                                        [&](const SceneField& field) { return field.keyword == keyword; });
+        const auto found = std::ranges::find(statement_.fields, keyword, &SceneField::keyword);
         return found == statement_.fields.end() ? nullptr : &*found;
     }
 
@@ -54,14 +57,13 @@ class SceneFields {
 
     /// One coordinate of such a point.
     std::optional<double> coordinate(std::string_view keyword) const {
-        return number(
-            keyword, [](double x) { return is_place(Vec3(x)); }, place_demand());
+        return number(keyword, between(-largest_size, largest_size), place_demand());
     }
 
     std::optional<unsigned> whole(std::string_view keyword, unsigned least, unsigned most) const {
-        const std::optional<double> value = number(
-            keyword, [&](double x) { return x >= least && x <= most && x == std::floor(x); },
-            fmt::format("be a whole number between {} and {}", least, most));
+        const std::optional<double> value =
+            number(keyword, whole_between(least, most),
+                   fmt::format("be a whole number between {} and {}", least, most));
         return value ? std::optional(static_cast<unsigned>(*value)) : std::nullopt;
     }
 
@@ -90,16 +92,12 @@ class SceneFields {
     }
 
     std::optional<double> temperature(std::string_view keyword) const {
-        return number(
-            keyword, [](double x) { return x >= least_temperature_k && x <= most_temperature_k; },
-            fmt::format("lie between {} and {} kelvin", least_temperature_k, most_temperature_k));
+        return within(keyword, least_temperature_k, most_temperature_k, " kelvin");
     }
 
     /// A factor of light.
     std::optional<double> brightness(std::string_view keyword) const {
-        return number(
-            keyword, [](double x) { return x >= 0 && x <= most_brightness; },
-            fmt::format("lie between 0 and {}", shortest(most_brightness)));
+        return within(keyword, 0, most_brightness);
     }
 
     std::optional<FlatArea> area(std::string_view keyword) const {
@@ -121,6 +119,13 @@ class SceneFields {
         diagnostics_.error(find(keyword)->values[index].span,
                            fmt::format("'{}' must {}, not {}", keyword, demand, shortest(*value)));
         return std::nullopt;
+    }
+
+    /// A number of a range. `unit`: what messages say after its ends.
+    std::optional<double> within(std::string_view keyword, double least, double most,
+                                 std::string_view unit = "") const {
+        return number(keyword, between(least, most),
+                      fmt::format("lie between {} and {}{}", shortest(least), shortest(most), unit));
     }
 
     void error(std::string_view keyword, std::string message) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -21,26 +22,43 @@ namespace {
 
 constexpr std::uint64_t most_written = 5'000'000;
 
+bool is_in_name(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
+
 bool is_long_name(std::string_view symbol) {
-    const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
-    return symbol.size() > 1 && in_name(symbol.back());
+    return symbol.size() > 1 && is_in_name(symbol.back());
 }
 
 /// A word as an axiom would have it: `F(1)[+(25)A(0.5)]`, numbers as the shortest decimals that read back to
-/// them, and blanks about names of several letters. It is the word before interpretation.
+/// them, and blanks about names of several letters, and where letters would read as such a name. It is the
+/// word before interpretation.
 class WrittenWord : public WordWitness {
   public:
-    /// Both must outlive this. More modules are an error.
-    WrittenWord(const LsysGrammar& grammar, std::uint64_t most_modules, Diagnostics& diagnostics)
-        : grammar_(grammar), most_modules_(most_modules), diagnostics_(diagnostics) {}
+    /// Both must outlive this. `steps`: of the derivation. More modules are an error.
+    WrittenWord(const LsysGrammar& grammar, unsigned steps, std::uint64_t most_modules,
+                Diagnostics& diagnostics)
+        : grammar_(grammar), steps_(steps), most_modules_(most_modules), diagnostics_(diagnostics) {
+        for (const Name& name : grammar.source->modules)
+            if (name.text.size() > 1) names_.insert(name.text);
+    }
 
     std::string take() && { return std::move(text_); }
 
     void add(SymbolId symbol, std::span<const double> parameters) {
         const std::string& name = grammar_.symbols[symbol];
+        const bool is_letter = name.size() == 1 && is_in_name(name.front());
+        if (is_letter)
+            letters_ += name;
+        else
+            letters_.clear();
         const bool apart = is_long_name(name) && !text_.empty() && text_.back() != ' ';
-        if (apart) text_ += ' ';
+        if (apart || ends_as_a_name()) {
+            text_ += ' ';
+            letters_ = is_letter ? name : "";
+        }
         text_ += name;
+        if (!parameters.empty()) letters_.clear();
         for (std::size_t i = 0; i < parameters.size(); ++i)
             text_ += (i == 0 ? "(" : ",") + shortest(parameters[i]);
         if (!parameters.empty())
@@ -50,16 +68,30 @@ class WrittenWord : public WordWitness {
     }
     bool begins(const Module& module, const Turtle&) override {
         add(module.symbol, module.parameters);
-        return ++count_ <= most_modules_ || refuse_length(grammar_, most_modules_, 0, diagnostics_);
+        return ++count_ <= most_modules_ || refuse_length(grammar_, most_modules_, steps_, diagnostics_);
     }
-    void closes_branch() override { text_ += ']'; }
+    void closes_branch() override {
+        text_ += ']';
+        letters_.clear();
+    }
 
   private:
+    /// Whether the last letters, modules each, would read as one of a longer name.
+    bool ends_as_a_name() const {
+        if (names_.empty()) return false;
+        for (std::size_t size = 2; size <= std::min(letters_.size(), max_lsys_symbol); ++size)
+            if (names_.contains(std::string_view(letters_).substr(letters_.size() - size))) return true;
+        return false;
+    }
+
     const LsysGrammar& grammar_;
+    unsigned steps_;
     std::uint64_t most_modules_;
     Diagnostics& diagnostics_;
+    std::set<std::string_view> names_; ///< of several letters, that are declared
     std::uint64_t count_ = 0;
     std::string text_;
+    std::string letters_; ///< at its end, that are modules each
 };
 
 /// The word of a grammar after these steps, derived module by module; nothing after an error. O(modules of
@@ -75,7 +107,7 @@ std::optional<std::string> derived_word(LsysRewriter& rewriter, unsigned steps, 
             [&](std::uint32_t step, ModuleString& word) { return queries.answer(step, word); });
     const std::optional<ModuleString> word = deriver.derive(steps);
     if (!word) return std::nullopt;
-    WrittenWord written(grammar, max_modules, diagnostics);
+    WrittenWord written(grammar, steps, max_modules, diagnostics);
     for (const ModuleId id : *word)
         written.add(rewriter.modules().symbol(id), rewriter.modules().parameters(id));
     return std::move(written).take();
@@ -123,7 +155,7 @@ std::optional<std::string> word_as_drawn(const LsysGrammar& grammar, const Model
             .with_hint("give '--exact'");
         return std::nullopt;
     }
-    WrittenWord word(grammar, most, diagnostics);
+    WrittenWord word(grammar, *options.steps, most, diagnostics);
     if (!tell_lsys(grammar, models, options, graph, pool, diagnostics, word)) return std::nullopt;
     return std::move(word).take();
 }

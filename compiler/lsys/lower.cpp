@@ -89,6 +89,10 @@ class LsysLowering {
             if (!fresh)
                 diagnostics_.error(use.name.span, fmt::format("duplicate use '{}'", use.name.text))
                     .with_note(first->second.span, "first defined here");
+            else if (is_reserved_name(use.name.text)) // `~NAME` would place the primitive
+                diagnostics_.error(
+                    use.name.span,
+                    fmt::format("'{}' is a primitive and cannot name a used model", use.name.text));
             else if (use.name.text.find('.') != std::string_view::npos)
                 diagnostics_.error(
                     use.name.span,
@@ -143,7 +147,8 @@ class LsysLowering {
             added.grammar = build_grammar(*added.source, std::move(lets), diagnostics_);
         }
         if (lowering_.at_root_model())
-            check_set_names(all_lets, {"angle", "step", "width", "thickness", "steps", "seed"}, lowering_);
+            check_set_names(all_lets, {"angle", "step", "width", "thickness", "steps", "seed"},
+                            tree_.statements, lowering_);
     }
 
     /// `--set angle=40` speaks to the block that is the model.
@@ -373,6 +378,7 @@ class LsysLowering {
                                  const std::map<SymbolId, Model>& models, std::optional<unsigned> steps) {
         const LsysBlock& source = *block.source;
         const LsysDrawOptions options = draw_options(block, grammar, models, steps);
+        lowering_.notes.asks_chance |= grammar.asks_chance();
         if (lowering_.options.in_place != LowerOptions::InPlace::nothing && is_root(block)) {
             LowerNotes& notes = lowering_.notes;
             if (lowering_.options.in_place == LowerOptions::InPlace::word)
@@ -388,6 +394,7 @@ class LsysLowering {
         if (is_root(block)) {
             lowering_.notes.derivation = std::move(drawing->derivation);
             lowering_.notes.derivation->families = families();
+            lowering_.notes.derivation->grows = grammar.grows();
         }
         const bool is_idle =
             steps == 0u && !is_asked_for_steps(block, grammar) && grammar.has_rules(RuleKind::produce);

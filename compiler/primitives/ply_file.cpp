@@ -130,18 +130,18 @@ class PlyReader {
 
     /// Checks the counts before anything is read: each element takes a byte at least.
     bool check_counts() {
-        std::uint64_t sum = 0;
+        std::uint64_t sum = 0, vertices = 0, faces = 0; // a header may name an element again
         for (const Element& element : elements_) {
             if (element.properties.empty() && element.count > 0)
                 return fail(fmt::format("element '{}' has no properties", element.name));
             if (element.count > rest_.size() || (sum += element.count) > rest_.size())
                 return fail("the file is shorter than its header says");
-            if (element.name == "vertex" && element.count > most_mesh_vertices)
-                return fail(fmt::format("there are {} vertices, and {} are the most", element.count,
-                                        most_mesh_vertices));
-            if (element.name == "face" && element.count > most_mesh_triangles)
-                return fail(fmt::format("there are {} faces, and {} are the most", element.count,
-                                        most_mesh_triangles));
+            if (element.name == "vertex" && (vertices += element.count) > most_mesh_vertices)
+                return fail(
+                    fmt::format("there are {} vertices, and {} are the most", vertices, most_mesh_vertices));
+            if (element.name == "face" && (faces += element.count) > most_mesh_triangles)
+                return fail(
+                    fmt::format("there are {} faces, and {} are the most", faces, most_mesh_triangles));
         }
         return true;
     }

@@ -97,7 +97,7 @@ struct PrimitiveTraits {
 
     bool bounded = true;
 
-    /// Exact, and the smallest ball.
+    /// Exact, and the smallest ball; of shapes of many points one that is about as small (ball_about()).
     Box (*box)(const Primitive&);
     Ball (*ball)(const Primitive&);
     /// A point that is farthest along a direction, which need not be of unit length.

@@ -42,7 +42,7 @@ class AreaSampler {
     std::vector<double> sums_; ///< of the areas up to each piece
 };
 
-/// A ball about the middle of the points' box; its radius is less than a quarter too large.
+/// A ball about the middle of the points' box; its radius may be a third too large.
 Ball ball_about(std::span<const Vec3> points);
 Box box_about(std::span<const Vec3> points);
 Vec3 farthest_of(std::span<const Vec3> points, Vec3 direction);

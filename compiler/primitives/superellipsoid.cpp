@@ -101,7 +101,7 @@ Box box(const Primitive&) {
 double longest(double stretch, double p) {
     if (p <= 2) return std::max(stretch, 1.0);
     const double t = p / (p - 2); // dual to p / 2, for the squares
-    return std::sqrt(std::pow(std::pow(stretch, 2 * t) + 1, 1 / t));
+    return std::sqrt(norm_of(stretch * stretch, 1, t));
 }
 
 Ball ball(const Primitive& primitive) {

@@ -252,7 +252,7 @@ bool intersect(const Primitive&, const Ray& ray, const RayRange& range, Primitiv
             const double t = middle + s / speed;
             if (!(t < range.most)) return false;
             if (t > range.least) {
-                hit = {t, normal_at(point + s * along)};
+                hit = {t, normal_at(point + s * along), steps_of_a_quartic};
                 return true;
             }
         }

@@ -40,7 +40,7 @@ class ChanceSolver {
         chances_.share.assign(system.nodes.size(), 0.0);
         chances_.row.assign(system.nodes.size(), 0.0);
         for (std::uint32_t b = 0; b < system.blocks.size(); ++b) {
-            weigh_maps(system.blocks[b]);
+            weigh_maps(system.blocks[b], condensations[b]);
             weigh_parts(b, condensations[b]);
         }
     }
@@ -62,9 +62,11 @@ class ChanceSolver {
   private:
     static constexpr std::uint32_t none = UINT32_MAX;
 
-    void weigh_maps(const RifsSubsystem& block) {
+    void weigh_maps(const RifsSubsystem& block, const std::vector<std::optional<double>>& parts) {
         double stated = 0, sizes = 0;
         int silent = 0;
+        for (const auto& part : parts)
+            stated += part.value_or(0);
         for (std::uint32_t i = block.first; i < block.end; ++i) {
             const RifsNode& node = system_.nodes[i];
             stated += node.probability.value_or(0);

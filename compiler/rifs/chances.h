@@ -35,9 +35,9 @@ struct RifsChances {
 };
 
 /// Nothing if no probabilities are stated. `condensations`: by block, by set, as stated. Maps without one
-/// share what the others of their block leave by their sizes, at least a hundredth each. A system of which
-/// some part is never left, or never entered again, begins anew at a random map once in twenty times.
-/// Requires resolved digraphs and marks of the empty nodes.
+/// share what the others of their block, and its sets, leave by their sizes, at least a hundredth each. A
+/// system of which some part is never left, or never entered again, begins anew at a random map once in
+/// twenty times. Requires resolved digraphs and marks of the empty nodes.
 std::optional<RifsChances> rifs_chances(const RifsSystem& system,
                                         const std::vector<std::vector<std::optional<double>>>& condensations);
 

@@ -66,12 +66,13 @@ class DigraphResolver {
             node.from = found->second;
             return;
         }
+        node.from = node.block;
+        if (diagnostics_.full()) return;
         std::vector<std::string> known;
         for (const RifsSubsystem& block : system_.blocks)
             if (known.size() < most_candidates) known.emplace_back(block.source->name.text);
         diagnostics_.error(from->span, fmt::format("unknown rifs '{}'", from->text))
             .with_hint(choices(from->text, known));
-        node.from = node.block;
     }
 
     void resolve_start() {

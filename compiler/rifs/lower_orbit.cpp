@@ -14,21 +14,25 @@
 #include "compiler/rifs/system.h"
 #include "compiler/support/number.h"
 #include "compiler/syntax/lost_value.h"
+#include "compiler/syntax/write_out.h"
 
 namespace graftal {
 
 namespace {
 
 constexpr double most_skipped = 1e9;
-constexpr double largest_factor = 1e6;      ///< of `follow`
-constexpr std::size_t most_words = 100'000; ///< of one formula, with all functions written out
+constexpr double largest_factor = 1e6; ///< of `follow`
+// With all functions written out:
+constexpr std::size_t most_words = 100'000;          ///< of one formula
+constexpr std::size_t most_words_in_all = 2'000'000; ///< of all formulas of a block
+constexpr std::size_t most_depth = 2'000;            ///< of one formula: recursion follows it
 
 class OrbitLowering {
   public:
     OrbitLowering(const RifsFile& tree, const OrbitBlock& block, Lowering& lowering)
         : block_(block), lowering_(lowering), diagnostics_(lowering.diagnostics) {
         model_.lets = block_lets(evaluate_lets(tree.statements, {}, lowering_));
-        check_set_names(model_.lets, {}, lowering_);
+        check_set_names(model_.lets, {}, tree.statements, lowering_);
         lower_settings(tree.statements, model_.lets, model_.scene, lowering_);
     }
 
@@ -74,23 +78,41 @@ class OrbitLowering {
     Expression expanded(const Expression& e) {
         words_ = 0;
         too_long_ = false;
-        return expanded(e, block_.functions.size(), {});
+        Expression written = expanded(e, block_.functions.size(), {}, 1);
+        words_in_all_ += words_;
+        return written;
+    }
+
+    /// Whether the formula may have so many more words, at this depth; if not, that is reported once, and
+    /// nothing more is written out.
+    bool has_room(const Expression& e, std::size_t words, std::size_t depth) {
+        if (too_long_) return false;
+        words_ += words;
+        const bool all = words_in_all_ + words_ > most_words_in_all;
+        if (words_ <= most_words && depth <= most_depth && !all) return true;
+        too_long_ = true;
+        if (all && std::exchange(all_too_long_, true)) return false;
+        diagnostics_.error(
+            e.span, all ? fmt::format("the formulas of 'orbit {}' have more than {} words, with "
+                                      "all functions written out",
+                                      block_.name.text, most_words_in_all)
+                    : depth > most_depth ? fmt::format("this formula nests more than {} deep", most_depth)
+                                         : fmt::format("this formula has more than {} words", most_words));
+        return false;
     }
 
     using Arguments = std::vector<std::pair<std::string_view, const Expression*>>;
 
-    Expression expanded(const Expression& e, std::size_t known, const Arguments& arguments) {
-        if (++words_ > most_words) {
-            if (!std::exchange(too_long_, true))
-                diagnostics_.error(e.span, fmt::format("this formula has more than {} words", most_words));
-            return {};
-        }
+    /// `depth`: of the expression in the formula.
+    Expression expanded(const Expression& e, std::size_t known, const Arguments& arguments,
+                        std::size_t depth) {
+        if (!has_room(e, 1, depth)) return {};
         Expression copy;
         if (e.kind == Expression::Kind::name && !arguments.empty()) {
             for (const auto& [name, value] : arguments)
                 if (e.text == name) {
-                    words_ += words_of(*value);
-                    return *value;
+                    const ExpressionExtent extent = extent_of(*value, {});
+                    return has_room(e, extent.words, depth + extent.depth) ? *value : Expression();
                 }
             // A function reads the block's constants, whatever a map calls its own.
             if (const auto constant = model_.lets.find(e.text);
@@ -105,11 +127,11 @@ class OrbitLowering {
         copy.text = e.text;
         copy.span = e.span;
         for (const Expression& operand : e.operands)
-            copy.operands.push_back(expanded(operand, known, arguments));
-        return e.kind == Expression::Kind::call ? call_written_out(std::move(copy), known) : copy;
+            copy.operands.push_back(expanded(operand, known, arguments, depth + 1));
+        return e.kind == Expression::Kind::call ? call_written_out(std::move(copy), known, depth) : copy;
     }
 
-    Expression call_written_out(Expression call, std::size_t known) {
+    Expression call_written_out(Expression call, std::size_t known, std::size_t depth) {
         const OrbitFunction* function = function_named(call.text);
         if (!function) return call;
         const auto place = static_cast<std::size_t>(function - block_.functions.data());
@@ -129,14 +151,7 @@ class OrbitLowering {
         Arguments arguments;
         for (std::size_t i = 0; i < call.operands.size(); ++i)
             arguments.emplace_back(function->parameters[i].text, &call.operands[i]);
-        return expanded(function->body, place, arguments);
-    }
-
-    static std::size_t words_of(const Expression& e) {
-        std::size_t words = 1;
-        for (const Expression& operand : e.operands)
-            words += words_of(operand);
-        return words;
+        return expanded(function->body, place, arguments, depth);
     }
 
     void lower_start() {
@@ -272,6 +287,8 @@ class OrbitLowering {
     std::size_t stated_ = 0;
     std::size_t words_ = 0; ///< of the formula that is being written out
     bool too_long_ = false;
+    std::size_t words_in_all_ = 0; ///< of those before it
+    bool all_too_long_ = false;
 };
 
 bool may_stand_there(const RifsFile& tree, Lowering& lowering) {

@@ -38,8 +38,7 @@ struct Subject {
 
     explicit Subject(const Box& bounds) : centre(0.5 * bounds.min + 0.5 * bounds.max) {
         const Vec3 half = 0.5 * bounds.max - 0.5 * bounds.min;
-        const double reach = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)});
-        scale = std::max({half.x, half.y, half.z, 1e-12 * reach});
+        scale = std::max({half.x, half.y, half.z, 1e-12 * largest_entry(centre)});
         if (scale == 0) scale = 1; // a point at the origin
         for (const Vec3& corner : Box{-half, half}.corners())
             corners.push_back(corner / scale);
@@ -113,6 +112,14 @@ Vec3 in_axes(const Camera& camera, Vec3 p) {
     return {glm::dot(p, camera.right), glm::dot(p, camera.up), glm::dot(p, camera.direction)};
 }
 
+/// The box of all corners, in the camera's axes.
+Box in_axes(const Camera& camera, const Subject& subject) {
+    Box box;
+    for (const Vec3& corner : subject.corners)
+        box.include(in_axes(camera, corner));
+    return box;
+}
+
 /// Moves the eye across until the margins left and right, and below and above, are equal. The tighter pair is
 /// so already.
 class EyeCentring {
@@ -139,12 +146,7 @@ class EyeCentring {
 
     /// Where corners stand much nearer than the middle, the steps above are too long, and lead away.
     void halve(Vec3& eye) {
-        Vec3 low(std::numeric_limits<double>::infinity()), high(-low);
-        for (const Vec3& corner : subject_.corners) {
-            const Vec3 place = in_axes(camera_, corner);
-            low = glm::min(low, place);
-            high = glm::max(high, place);
-        }
+        auto [low, high] = in_axes(camera_, subject_);
         for (int i = 0; i < 50; ++i) {
             const Vec3 off = imbalance(eye); // falls as the eye moves on
             for (int axis = 0; axis < 2; ++axis) {
@@ -158,13 +160,10 @@ class EyeCentring {
     Vec3 imbalance(Vec3 eye) {
         const Vec3 moved = glm::abs(eye - looked_from_);
         if (outermost_.empty() || std::max(moved.x, moved.y) > 0.9 * farthest_moved) look_from(eye);
-        Vec3 most(-std::numeric_limits<double>::infinity()), least(-most);
-        for (const Vec3& corner : outermost_) {
-            const Vec3 p = corner - eye;
-            most = glm::max(most, p / p.z);
-            least = glm::min(least, p / p.z);
-        }
-        return most + least;
+        Box slopes;
+        for (const Vec3& corner : outermost_)
+            slopes.include((corner - eye) / (corner - eye).z);
+        return slopes.max + slopes.min;
     }
 
     /// Finds the few corners that can be outermost while the eye stays near. Only these are looked at again.
@@ -260,12 +259,7 @@ void place_perspective(Camera& camera, const CameraSetting& setting, const Subje
 
 /// The point of which as much lies to the left as to the right, and as much below as above.
 Vec3 middle(const Camera& camera, const Subject& subject) {
-    Vec3 most(-std::numeric_limits<double>::infinity()), least(-most);
-    for (const Vec3 corner : subject.corners) {
-        most = glm::max(most, in_axes(camera, corner));
-        least = glm::min(least, in_axes(camera, corner));
-    }
-    const Vec3 centre = 0.5 * (most + least);
+    const Vec3 centre = in_axes(camera, subject).centre();
     return centre.x * camera.right + centre.y * camera.up + centre.z * camera.direction;
 }
 
@@ -307,15 +301,14 @@ void place_orthographic(Camera& camera, const CameraSetting& setting, const Subj
 
 /// Width over height of what the camera sees of the subject; 1 of a point.
 double aspect_of(const Camera& camera, const Subject& subject) {
-    Vec3 most(-std::numeric_limits<double>::infinity()), least(-most);
+    Box seen;
     const Vec3 eye = in_axes(camera, subject.local(camera.location));
     for (const Vec3 corner : subject.corners) {
         Vec3 p = in_axes(camera, corner);
         if (!camera.orthographic) p = (p - eye) / std::max((p - eye).z, 1e-6);
-        most = glm::max(most, p);
-        least = glm::min(least, p);
+        seen.include(p);
     }
-    const double width = most.x - least.x, height = most.y - least.y;
+    const double width = seen.size().x, height = seen.size().y;
     if (!(width > 0 || height > 0)) return 1;
     return std::max(width, 1e-6 * height) / std::max(height, 1e-6 * width);
 }

@@ -24,18 +24,14 @@ double round_down(double value) {
     return power;
 }
 
-double largest(Vec3 v) {
-    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
 } // namespace
 
 PovrayUnits choose_units(const DrawnExtent& drawn, const Camera& camera) {
     const Box& bounds = drawn.bounds;
     PovrayUnits units;
     if (bounds.empty()) return units;
-    const double distance = largest(camera.location - bounds.centre());
-    double size = 2 * largest(0.5 * bounds.max - 0.5 * bounds.min);
+    const double distance = largest_entry(camera.location - bounds.centre());
+    double size = 2 * largest_entry(0.5 * bounds.max - 0.5 * bounds.min);
     if (size == 0) size = camera.orthographic ? camera.width : distance;
     if (size == 0) size = 1;
     const double usual = extent / size;
@@ -43,7 +39,7 @@ PovrayUnits choose_units(const DrawnExtent& drawn, const Camera& camera) {
         std::min(largest_extent / size, largest_part / std::max(drawn.largest_part, 1e-3 * size));
     const double wanted = std::clamp(least_length / drawn.finest, usual, std::max(most, usual));
     units.scale = round_down(std::min(wanted, farthest_camera / std::max(distance, size)));
-    if (largest(bounds.centre()) > 2 * size) units.origin = bounds.centre();
+    if (largest_entry(bounds.centre()) > 2 * size) units.origin = bounds.centre();
     GRAFTAL_CHECK(std::isfinite(units.scale) && units.scale > 0,
                   "POV-Ray's units: a scene beyond all scales");
     return units;

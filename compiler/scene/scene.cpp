@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "compiler/graph/pattern_colours.h"
@@ -55,8 +54,7 @@ std::vector<Light> model_lights(const std::vector<LightSetting>& settings) {
     for (const LightSetting& setting : settings) {
         Light light{setting.location, setting.sun, setting.rgb, setting.shadowless, setting.angle_deg};
         if (setting.sun) {
-            const Vec3 size = glm::abs(setting.location);
-            const double largest = std::max({size.x, size.y, size.z});
+            const double largest = largest_entry(setting.location);
             // A sun from nowhere stands overhead.
             light.location = largest > 0 ? glm::normalize(setting.location / largest) : Vec3(0, 1, 0);
         }

@@ -101,8 +101,9 @@ std::shared_ptr<const ViewedModel> Session::viewed(const StageOptions& options, 
         compilation, [&] { return need_viewed(options, compilation) ? viewed_.value() : nullptr; });
 }
 
-std::shared_ptr<const PreparedCut> Session::prepared(const StageOptions& options, Compilation& compilation) {
-    return unless_ended<PreparedCut>(compilation, [&] {
+std::shared_ptr<const PreparedGraph> Session::prepared(const StageOptions& options,
+                                                       Compilation& compilation) {
+    return unless_ended<PreparedGraph>(compilation, [&] {
         const bool there = need_viewed(options, compilation) && need_prepared(options, compilation);
         return there ? prepared_.value() : nullptr;
     });
@@ -249,8 +250,8 @@ bool Session::need_prepared(const StageOptions& options, Compilation& compilatio
     prepared_.run(std::move(key), {}, [&](const PrepareKey&, Diagnostics&) {
         ++runs_.prepared;
         StageWork work = stage_work(options, model.work_seconds);
-        return std::optional(prepare_cut(model.graph, model.components, model.bounds, detail.preparing(),
-                                         charging(work), after_pass_));
+        return std::optional(prepare_graph(model.graph, model.components, model.bounds, detail.preparing(),
+                                           charging(work), after_pass_));
     });
     return true;
 }

@@ -80,7 +80,7 @@ class Session {
                                                   bool for_report = false);
     std::shared_ptr<const ViewedModel> viewed(const StageOptions& options, Compilation& compilation);
     /// The graph made ready for any engine. An unfolding without an end is an error.
-    std::shared_ptr<const PreparedCut> prepared(const StageOptions& options, Compilation& compilation);
+    std::shared_ptr<const PreparedGraph> prepared(const StageOptions& options, Compilation& compilation);
 
     /// Gives up what `keep` does not want kept while another program draws.
     void yield_memory();
@@ -163,7 +163,7 @@ class Session {
     bool reads_steps_ = true;                 ///< the last lowering: its value depends on steps
     Memo<AnalyseKey, AnalysedModel> analysed_;
     Memo<ViewKey, ViewedModel> viewed_;
-    Memo<PrepareKey, PreparedCut> prepared_;
+    Memo<PrepareKey, PreparedGraph> prepared_;
 };
 
 } // namespace graftal

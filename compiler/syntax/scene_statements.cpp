@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,64 +23,59 @@ struct FieldRule {
     Shape shape;
 };
 
-/// The fields of a statement in braces; empty for the others.
-const std::vector<FieldRule>& rules(Kind kind) {
-    static const std::vector<FieldRule> camera = {
-        {"location", Shape::vector}, {"look_at", Shape::vector},    {"up", Shape::vector},
-        {"angle", Shape::number},    {"orthographic", Shape::flag}, {"width", Shape::number},
-        {"height", Shape::number},   {"aperture", Shape::number},   {"focus", Shape::vector},
-        {"direction", Shape::vector}};
-    static const std::vector<FieldRule> haze = {{"distance", Shape::number},
-                                                {"color", Shape::color},
-                                                {"base", Shape::number},
-                                                {"height", Shape::number},
-                                                {"sun", Shape::number}};
-    static const std::vector<FieldRule> light = {
-        {"location", Shape::vector},    {"sun", Shape::vector},        {"color", Shape::color},
-        {"temperature", Shape::number}, {"brightness", Shape::number}, {"angle", Shape::number},
-        {"shadowless", Shape::flag},    {"size", Shape::pair},         {"radius", Shape::number},
-        {"look_at", Shape::vector}};
-    static const std::vector<FieldRule> sky = {
-        {"zenith", Shape::color}, {"horizon", Shape::color},     {"below", Shape::color},
-        {"clear", Shape::number}, {"clouds", Shape::number},     {"environment", Shape::text},
-        {"turn", Shape::number},  {"brightness", Shape::number}, {"bounces", Shape::number}};
-    static const std::vector<FieldRule> film = {
-        {"exposure", Shape::number}, {"white", Shape::number}, {"soft", Shape::flag}, {"hard", Shape::flag}};
-    static const std::vector<FieldRule> background = {{"zenith", Shape::color}, {"horizon", Shape::color}};
-    static const std::vector<FieldRule> ground = {
-        {"height", Shape::number}, {"color", Shape::color}, {"material", Shape::name}, {"area", Shape::area}};
-    static const std::vector<FieldRule> material = {
-        {"color", Shape::color},         {"ambient", Shape::number},    {"diffuse", Shape::number},
-        {"specular", Shape::number},     {"roughness", Shape::number},  {"reflection", Shape::number},
-        {"translucency", Shape::number}, {"emission", Shape::number},   {"texture", Shape::text},
-        {"around", Shape::number},       {"metallic", Shape::number},   {"transparency", Shape::number},
-        {"ior", Shape::number},          {"absorption", Shape::number}, {"from", Shape::name},
-        {"blur", Shape::number},         {"filter", Shape::number},     {"pattern", Shape::name},
-        {"scale", Shape::number},        {"octaves", Shape::number},    {"stretch", Shape::vector},
-        {"warp", Shape::number},         {"space", Shape::name},        {"plus", Shape::name},
-        {"share", Shape::number},        {"low", Shape::color},         {"high", Shape::color},
-        {"bump", Shape::number}};
-    static const std::vector<FieldRule> none;
-    switch (kind) {
-    case Kind::camera:
-        return camera;
-    case Kind::light:
-        return light;
-    case Kind::background:
-        return background;
-    case Kind::ground:
-        return ground;
-    case Kind::material:
-        return material;
-    case Kind::sky:
-        return sky;
-    case Kind::film:
-        return film;
-    case Kind::haze:
-        return haze;
-    default:
-        return none;
-    }
+struct StatementRule {
+    std::string_view keyword;
+    std::span<const FieldRule> fields; ///< in its braces
+    const char* example;               ///< the statement with some of its fields
+};
+
+/// The statements, in the order of their kinds.
+std::span<const StatementRule> statement_rules() {
+    using enum Shape;
+    static constexpr FieldRule camera[] = {{"location", vector}, {"look_at", vector},    {"up", vector},
+                                           {"angle", number},    {"orthographic", flag}, {"width", number},
+                                           {"height", number},   {"aperture", number},   {"focus", vector},
+                                           {"direction", vector}};
+    static constexpr FieldRule light[] = {{"location", vector},    {"sun", vector},        {"color", color},
+                                          {"temperature", number}, {"brightness", number}, {"angle", number},
+                                          {"shadowless", flag},    {"size", pair},         {"radius", number},
+                                          {"look_at", vector}};
+    static constexpr FieldRule background[] = {{"zenith", color}, {"horizon", color}};
+    static constexpr FieldRule ground[] = {
+        {"height", number}, {"color", color}, {"material", name}, {"area", area}};
+    static constexpr FieldRule material[] = {
+        {"color", color},      {"ambient", number},    {"diffuse", number},      {"specular", number},
+        {"roughness", number}, {"reflection", number}, {"translucency", number}, {"emission", number},
+        {"texture", text},     {"around", number},     {"metallic", number},     {"transparency", number},
+        {"ior", number},       {"absorption", number}, {"from", name},           {"blur", number},
+        {"filter", number},    {"pattern", name},      {"scale", number},        {"octaves", number},
+        {"stretch", vector},   {"warp", number},       {"space", name},          {"plus", name},
+        {"share", number},     {"low", color},         {"high", color},          {"bump", number}};
+    static constexpr FieldRule sky[] = {{"zenith", color}, {"horizon", color},     {"below", color},
+                                        {"clear", number}, {"clouds", number},     {"environment", text},
+                                        {"turn", number},  {"brightness", number}, {"bounces", number}};
+    static constexpr FieldRule film[] = {
+        {"exposure", number}, {"white", number}, {"soft", flag}, {"hard", flag}};
+    static constexpr FieldRule haze[] = {
+        {"distance", number}, {"color", color}, {"base", number}, {"height", number}, {"sun", number}};
+    static constexpr StatementRule rules[] = {
+        {"camera", camera, "camera { location: 3, 2, 5  look_at: 0, 0, 0 }"},
+        {"light", light, "light { sun: 1, 2, 3 } or light { location: 10, 20, 30 }"},
+        {"background", background, ""},
+        {"ground", ground, "ground { height: 0  color: 0.3, 0.3, 0.25 }"},
+        {"material", material, "material stone { color: 0.5, 0.5, 0.5 }"},
+        {"steps", {}, ""},
+        {"let", {}, ""},
+        {"inner", {}, ""},
+        {"sky", sky, "sky { zenith: 0.3, 0.5, 0.9  horizon: 0.9, 0.9, 1 } or sky { clear: 3 }"},
+        {"film", film, "film { exposure: 1.2 }"},
+        {"haze", haze, "haze { distance: 300  color: 0.7, 0.8, 0.9 }"},
+        {"preset", {}, ""}};
+    return rules;
+}
+
+const StatementRule& rule_of(Kind kind) {
+    return statement_rules()[static_cast<std::size_t>(kind)];
 }
 
 bool is_layer_field(std::string_view keyword) {
@@ -113,15 +109,17 @@ class StatementParser {
             return parse_lets(keyword.text);
         case Kind::steps:
             stream_.accept(":");
-            return parse_value("steps", keyword.span, Shape::number, "steps");
+            return parse_value(keyword, Shape::number);
         case Kind::material:
             return parse_name(keyword) && parse_block(keyword);
         case Kind::preset:
             return parse_name(keyword) && parse_preset();
         case Kind::background:
             stream_.accept(":");
-            if (!stream_.at("{")) return parse_value("zenith", keyword.span, Shape::color, "background");
-            return parse_block(keyword);
+            if (stream_.at("{")) return parse_block(keyword);
+            if (!parse_value(keyword, Shape::color)) return false;
+            statement_.fields.back().keyword = "zenith";
+            return true;
         default:
             return parse_block(keyword);
         }
@@ -140,8 +138,7 @@ class StatementParser {
         do {
             const std::optional<Token> name = stream_.expect_name(fmt::format("a name after '{}'", keyword));
             if (!name) return false;
-            if (!stream_.expect("=", name->text) ||
-                !parse_value(name->text, name->span, Shape::number, name->text) || !parse_members()) {
+            if (!stream_.expect("=", name->text) || !parse_value(*name, Shape::number) || !parse_members()) {
                 add_placeholder(*name);
                 statement_.complete = false;
                 while (!stream_.at_end() && !stream_.peek().first_on_line && !stream_.at(","))
@@ -164,7 +161,7 @@ class StatementParser {
             }
             const std::optional<Token> name = stream_.expect_name("a name to set or '}'");
             if (name && (stream_.accept(":") || stream_.expect("=", name->text)) &&
-                parse_value(name->text, name->span, Shape::number, name->text))
+                parse_value(*name, Shape::number))
                 continue;
             statement_.complete = false;
             stream_.skip_block();
@@ -196,7 +193,8 @@ class StatementParser {
         stream_.accept(":");
         const Token open = stream_.peek();
         if (!stream_.at("{")) {
-            stream_.expected(fmt::format("'{{' after '{}'", after)).with_hint(example());
+            stream_.expected(fmt::format("'{{' after '{}'", after))
+                .with_hint(rule_of(statement_.kind).example);
             return false;
         }
         stream_.next();
@@ -215,53 +213,31 @@ class StatementParser {
         return true;
     }
 
-    /// The statement with some of its fields.
-    const char* example() const {
-        switch (statement_.kind) {
-        case Kind::camera:
-            return "camera { location: 3, 2, 5  look_at: 0, 0, 0 }";
-        case Kind::light:
-            return "light { sun: 1, 2, 3 } or light { location: 10, 20, 30 }";
-        case Kind::sky:
-            return "sky { zenith: 0.3, 0.5, 0.9  horizon: 0.9, 0.9, 1 } or sky { clear: 3 }";
-        case Kind::haze:
-            return "haze { distance: 300  color: 0.7, 0.8, 0.9 }";
-        case Kind::film:
-            return "film { exposure: 1.2 }";
-        case Kind::preset:
-            return "preset oak { angle = 30  ratio = 0.7 }";
-        case Kind::ground:
-            return "ground { height: 0  color: 0.3, 0.3, 0.25 }";
-        default:
-            return "material stone { color: 0.5, 0.5, 0.5 }";
-        }
-    }
-
     /// `ground { material: stone` goes on, `ground {` and then `material stone {` does not.
     bool begins_other_statement() const {
-        const Token& word = stream_.peek();
-        if (stream_.is_statement_word(word)) return true;
-        return at_scene_statement(stream_) && !is_field(word.text);
+        return stream_.is_statement_word(stream_.peek()) || (at_scene_statement(stream_) && !at_field());
     }
 
-    bool is_field(std::string_view word) const {
-        if (word == "material" && stream_.peek(2).is("{")) return false;
-        const std::vector<FieldRule>& known = rules(statement_.kind);
-        return std::any_of(known.begin(), known.end(),
-                           [&](const FieldRule& rule) { return rule.keyword == word; });
+    bool at_material_definition() const { return stream_.at("material") && stream_.peek(2).is("{"); }
+
+    /// The field that the next token begins; null if it is none of this statement.
+    const FieldRule* next_field() const {
+        const std::span<const FieldRule> known = rule_of(statement_.kind).fields;
+        const auto found =
+            std::ranges::find_if(known, [&](const FieldRule& rule) { return stream_.at(rule.keyword); });
+        return found == known.end() ? nullptr : &*found;
     }
+
+    bool at_field() const { return next_field() && !at_material_definition(); }
 
     bool parse_field(std::string_view statement) {
-        const std::vector<FieldRule>& known = rules(statement_.kind);
         const Token keyword = stream_.peek();
-        for (const FieldRule& rule : known)
-            if (keyword.is(rule.keyword)) {
-                if (defines_material()) return false;
-                stream_.next();
-                stream_.accept(":");
-                return parse_value(keyword.text, keyword.span, rule.shape, keyword.text);
-            }
-        return report_unknown(statement);
+        const FieldRule* const rule = next_field();
+        if (!rule) return report_unknown(statement);
+        if (defines_material()) return false;
+        stream_.next();
+        stream_.accept(":");
+        return parse_value(keyword, rule->shape);
     }
 
     bool report_unknown(std::string_view statement) {
@@ -269,7 +245,7 @@ class StatementParser {
         std::vector<std::string> candidates;
         const bool patterned =
             std::ranges::find(statement_.fields, "pattern", &SceneField::keyword) != statement_.fields.end();
-        for (const FieldRule& rule : rules(statement_.kind))
+        for (const FieldRule& rule : rule_of(statement_.kind).fields)
             if (patterned || !belongs_to_pattern(rule.keyword)) candidates.emplace_back(rule.keyword);
         if (word.kind != TokenKind::name) {
             Diagnostic& error = stream_.expected(fmt::format("a field of '{}' or '}}'", statement));
@@ -286,14 +262,13 @@ class StatementParser {
 
     /// The value of an unknown field, so that the fields behind it on its line are read.
     void skip_value() {
-        while (!stream_.at_end() && !stream_.at("}") && !stream_.peek().first_on_line &&
-               !is_field(stream_.peek().text))
+        while (!stream_.at_end() && !stream_.at("}") && !stream_.peek().first_on_line && !at_field())
             if (stream_.next().is("{")) stream_.skip_block();
     }
 
     /// `ground { material stone { ... } }`. Reported and skipped.
     bool defines_material() {
-        if (!stream_.at("material") || !stream_.peek(2).is("{")) return false;
+        if (!at_material_definition()) return false;
         stream_.diagnostics()
             .error(stream_.peek().span, "define materials outside of other statements")
             .with_hint(fmt::format("here, write the material's name: 'material: {}'", stream_.peek(1).text));
@@ -303,13 +278,12 @@ class StatementParser {
         return true;
     }
 
-    /// `written`: what the text has in place of the keyword.
-    bool parse_value(std::string_view keyword, Span span, Shape shape, std::string_view written) {
+    bool parse_value(const Token& keyword, Shape shape) {
         SceneField field;
-        if (keyword == "plus" && statement_.kind == Kind::material) ++layer_;
-        field.keyword = layer_ > 0 && is_layer_field(keyword) ? layer_field(keyword, layer_) : keyword;
-        field.span = span;
-        const std::string what = fmt::format("'{}'", written);
+        if (keyword.text == "plus" && statement_.kind == Kind::material) ++layer_;
+        field.keyword = layer_field(keyword.text, is_layer_field(keyword.text) ? layer_ : 0);
+        field.span = keyword.span;
+        const std::string what = fmt::format("'{}'", keyword.text);
         std::optional<std::vector<Expression>> values(std::in_place);
         switch (shape) {
         case Shape::flag:
@@ -326,18 +300,14 @@ class StatementParser {
         case Shape::color:
             values = parse_color(stream_, what);
             break;
-        case Shape::name: {
-            const std::optional<Token> name = stream_.expect_name("a name after " + what);
-            if (!name) return false;
-            field.name = name->text;
-            field.name_span = name->span;
-            break;
-        }
+        case Shape::name:
         case Shape::text: {
-            const std::optional<Token> text = stream_.expect_string("a file name in quotes after " + what);
-            if (!text) return false;
-            field.name = text->text;
-            field.name_span = text->span;
+            const std::optional<Token> word =
+                shape == Shape::name ? stream_.expect_name("a name after " + what)
+                                     : stream_.expect_string("a file name in quotes after " + what);
+            if (!word) return false;
+            field.name = word->text;
+            field.name_span = word->span;
             break;
         }
         case Shape::area: {
@@ -366,15 +336,18 @@ std::string layer_field(std::string_view keyword, std::size_t layer) {
 }
 
 const std::vector<std::string>& scene_keywords() {
-    static const std::vector<std::string> keywords = {"camera",   "light", "background", "ground",
-                                                      "material", "steps", "let",        "inner",
-                                                      "sky",      "film",  "haze",       "preset"};
+    static const std::vector<std::string> keywords = [] {
+        std::vector<std::string> words;
+        for (const StatementRule& rule : statement_rules())
+            words.emplace_back(rule.keyword);
+        return words;
+    }();
     return keywords;
 }
 
 std::vector<std::string_view> scene_fields(SceneStatement::Kind kind) {
     std::vector<std::string_view> keywords;
-    for (const FieldRule& rule : rules(kind))
+    for (const FieldRule& rule : rule_of(kind).fields)
         keywords.push_back(rule.keyword);
     return keywords;
 }

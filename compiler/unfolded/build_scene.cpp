@@ -48,11 +48,11 @@ struct SceneTask {
 };
 
 /// Least number of nodes that differ by their levels alone, where nothing is culled.
-std::size_t least_nodes(const PreparedCut& prepared) {
-    const std::vector<CutNode>& nodes = prepared.cut.nodes;
+std::size_t least_nodes(const PreparedGraph& prepared) {
+    const std::vector<DetailNode>& nodes = prepared.cut.nodes;
     if (!nodes[prepared.cut.root].unending || prepared.root_steps == unlimited_steps) return 0;
     // The leaves below a singular map are counted one by one.
-    return std::ranges::any_of(nodes, &CutNode::sealed) ? 0 : prepared.root_steps;
+    return std::ranges::any_of(nodes, &DetailNode::sealed) ? 0 : prepared.root_steps;
 }
 
 /// Thrown where a scene gets too large; caught by build_scene().
@@ -60,7 +60,7 @@ struct SceneTooLarge {};
 
 class SceneBuilder {
   public:
-    SceneBuilder(const PreparedCut& prepared, const View& view, const DetailOptions& detail,
+    SceneBuilder(const PreparedGraph& prepared, const View& view, const DetailOptions& detail,
                  SceneMeshes meshes, int grain, const SceneLimits& limits, const Control& control)
         : cut_(prepared.cut), prepared_(prepared), detail_(positive_error(detail)),
           projection_(view, detail_, detail_.error_px, nearest_to_eye(prepared.cut)), culls_(detail.culls()),
@@ -77,7 +77,7 @@ class SceneBuilder {
     UnfoldedScene build() {
         scene_.nodes.emplace_back();
         scene_.nodes[0].name = cut_.nodes[cut_.root].name;
-        CutEdge to_root;
+        DetailEdge to_root;
         to_root.child = cut_.root;
         to_root.similarity = true;
         const SceneTask world{0, {cut_.root, prepared_.root_steps, 0}, PlacedNode{}};
@@ -103,7 +103,7 @@ class SceneBuilder {
         return detail_.error_world ? 1 / *detail_.error_world : projection_.detail_range(ball).most;
     }
 
-    bool is_shared(const CutNode& node, const Ball& ball) const {
+    bool is_shared(const DetailNode& node, const Ball& ball) const {
         if (grain_ == 0 || detail_.error_world) return true;
         const Projection::DetailRange range = projection_.detail_range(ball);
         const bool even = range.most <= most_unequal * range.least;
@@ -176,8 +176,8 @@ class SceneBuilder {
     }
 
     /// `errors`: that measure a unit of the task's node.
-    void add_part(const SceneTask& task, const CutEdge& edge, double errors) {
-        const CutNode& child = cut_.nodes[edge.child];
+    void add_part(const SceneTask& task, const DetailEdge& edge, double errors) {
+        const DetailNode& child = cut_.nodes[edge.child];
         if (child.primitive && *child.primitive == PrimitiveKind::plane) {
             scene_.left_out_planes = true;
             return;
@@ -213,7 +213,7 @@ class SceneBuilder {
     }
 
     /// Steps of stretches that are rounded down get smaller round every cycle, so that this ends.
-    std::int32_t step_below(std::int32_t step, const CutEdge& edge) const {
+    std::int32_t step_below(std::int32_t step, const DetailEdge& edge) const {
         if (grain_ == 0) return 0;
         const double stretch = cut_.contractive ? edge.stretch : edge.volume_stretch;
         const double change = std::floor(std::log2(std::max(stretch, 1e-300)) * grain_ + 1e-6);
@@ -222,7 +222,7 @@ class SceneBuilder {
     }
 
     void fill(const SceneTask& task) {
-        const CutNode& node = cut_.nodes[task.key.node];
+        const DetailNode& node = cut_.nodes[task.key.node];
         scene_.nodes[task.id].whole = node.mean;
         double errors = errors_of(task);
         if (task.placed) errors *= task.placed->scale;
@@ -231,14 +231,14 @@ class SceneBuilder {
                                                         : std::numeric_limits<double>::infinity();
         const bool cut = is_cut(node, task.key.steps, detail, detail_.error_world ? 0 : detail_.error_px);
         if (node.cell && !cut) return fill_cell(task, node, errors);
-        const std::vector<CutEdge>& edges = followed_edges(node, cut);
+        const std::vector<DetailEdge>& edges = followed_edges(node, cut);
         if (edges.empty() && cut) return add_proxy(task.id, node, errors);
         if (cut && node.terminal) scene_.nodes[task.id].mean = node.mean;
-        for (const CutEdge& edge : edges)
+        for (const DetailEdge& edge : edges)
             add_part(task, edge, errors);
     }
 
-    void fill_cell(const SceneTask& task, const CutNode& node, double errors) {
+    void fill_cell(const SceneTask& task, const DetailNode& node, double errors) {
         node.cell->for_each([&](const CellEdge& edge) {
             if (++parts_ > limits_.parts) throw SceneTooLarge();
             meter_.add();
@@ -256,7 +256,7 @@ class SceneBuilder {
         return share / errors;
     }
 
-    void add_proxy(SceneId id, const CutNode& node, double errors) {
+    void add_proxy(SceneId id, const DetailNode& node, double errors) {
         ScenePart part;
         part.node_from_part = node.node_from_proxy;
         const double width = half_width(errors);
@@ -308,7 +308,7 @@ class SceneBuilder {
         while (!stack.empty()) {
             const Crushed at = stack.back();
             stack.pop_back();
-            const CutNode& node = cut_.nodes[at.node];
+            const DetailNode& node = cut_.nodes[at.node];
             if (node.primitive) {
                 if (*node.primitive == PrimitiveKind::plane)
                     scene_.left_out_planes = true;
@@ -324,7 +324,7 @@ class SceneBuilder {
                 continue;
             }
             const std::size_t first = stack.size();
-            for_each_edge(node, cut, [&](const CutEdge& edge) {
+            for_each_edge(node, cut, [&](const DetailEdge& edge) {
                 Crushed below{edge.child, steps_below(at.steps, edge), at.place * edge.node_from_child, 1,
                               at.look};
                 below.scale = size_below(at.scale, edge, below.place.linear);
@@ -353,8 +353,8 @@ class SceneBuilder {
             }
     }
 
-    const CutGraph& cut_;
-    const PreparedCut& prepared_;
+    const DetailGraph& cut_;
+    const PreparedGraph& prepared_;
     const DetailOptions detail_;
     const Projection projection_;
     const bool culls_;
@@ -370,7 +370,7 @@ class SceneBuilder {
 
 } // namespace
 
-std::optional<UnfoldedScene> build_scene(const PreparedCut& prepared, const View& view,
+std::optional<UnfoldedScene> build_scene(const PreparedGraph& prepared, const View& view,
                                          const DetailOptions& detail, SceneMeshes meshes, Span model,
                                          const SceneLimits& limits, const Control& control,
                                          Diagnostics& diagnostics) {

@@ -23,7 +23,7 @@ struct SceneLimits {
 ///
 /// `detail`: resolved. Its error is a length on the picture, coarser out of it as for pictures, or the same
 /// length everywhere (error_world). Without culling it still says how finely surfaces are meshed.
-std::optional<UnfoldedScene> build_scene(const PreparedCut& prepared, const View& view,
+std::optional<UnfoldedScene> build_scene(const PreparedGraph& prepared, const View& view,
                                          const DetailOptions& detail, SceneMeshes meshes, Span model,
                                          const SceneLimits& limits, const Control& control,
                                          Diagnostics& diagnostics);

@@ -22,7 +22,7 @@ constexpr std::size_t most_exact_edges = 5000;
 /// Edges after which the control is asked: some milliseconds.
 constexpr std::uint64_t edges_a_look = 5000;
 
-Instance instance_of(const CutEdge& edge) {
+Instance instance_of(const DetailEdge& edge) {
     Instance instance;
     instance.master = edge.child;
     instance.parent_from_child = edge.node_from_child;
@@ -39,25 +39,25 @@ Box box_by(const Primitive& primitive, const Affine& place, double (*support)(co
     return box;
 }
 
-std::size_t edge_count(const CutGraph& cut) {
+std::size_t edge_count(const DetailGraph& cut) {
     std::size_t count = 0;
-    for (const CutNode& node : cut.nodes)
+    for (const DetailNode& node : cut.nodes)
         count += node.edges.size() + node.stop_edges.size();
     return count;
 }
 
 class Bounder {
   public:
-    Bounder(const CutGraph& cut, std::uint64_t most_pieces, const Control& control)
+    Bounder(const DetailGraph& cut, std::uint64_t most_pieces, const Control& control)
         : cut_(cut), control_(control), exact_(edge_count(cut) <= most_exact_edges),
           most_pieces_(most_pieces) {
         graph_.root = cut.root;
-        for (const CutNode& node : cut.nodes) {
+        for (const DetailNode& node : cut.nodes) {
             Object object;
             object.primitive = node.primitive;
             if (!node.is_combined())
-                for (const std::vector<CutEdge>* edges : {&node.edges, &node.stop_edges})
-                    for (const CutEdge& edge : *edges)
+                for (const std::vector<DetailEdge>* edges : {&node.edges, &node.stop_edges})
+                    for (const DetailEdge& edge : *edges)
                         object.instances.push_back(instance_of(edge));
             graph_.objects.push_back(std::move(object));
         }
@@ -77,7 +77,7 @@ class Bounder {
             graph_.objects[id].instances.push_back(about);
         }
         for (NodeId id = 0; id < cut.nodes.size(); ++id) {
-            const CutNode& node = cut.nodes[id];
+            const DetailNode& node = cut.nodes[id];
             if (node.primitive || !node.stop_edges.empty() || !(node.cullable || node.unending)) continue;
             Instance proxy;
             proxy.master = static_cast<ObjectId>(cut.nodes.size());
@@ -89,19 +89,19 @@ class Bounder {
     DrawnBounds run() {
         const std::size_t nodes = cut_.nodes.size(), first = graph_.objects.size();
         for (NodeId id = 0; id < nodes; ++id)
-            for (const std::vector<CutEdge>* edges : {&cut_.nodes[id].edges, &cut_.nodes[id].stop_edges})
-                for (const CutEdge& edge : *edges)
+            for (const std::vector<DetailEdge>* edges : {&cut_.nodes[id].edges, &cut_.nodes[id].stop_edges})
+                for (const DetailEdge& edge : *edges)
                     if (needs_object(edge)) add_object(edge);
         bound();
         DrawnBounds result;
         WorkMeter meter(control_, "bounding", edges_a_look);
         result.pieces = pieces_;
         std::size_t next = first;
-        for (const CutNode& node : cut_.nodes) {
+        for (const DetailNode& node : cut_.nodes) {
             result.node.push_back(boxes_[result.node.size()]);
             for (const bool stop : {false, true}) {
                 std::vector<Box>& boxes = (stop ? result.stop_edge : result.edge).emplace_back();
-                for (const CutEdge& edge : stop ? node.stop_edges : node.edges)
+                for (const DetailEdge& edge : stop ? node.stop_edges : node.edges)
                     boxes.push_back(needs_object(edge) ? boxes_[next++] : box_of(edge));
                 meter.add(boxes.size());
             }
@@ -144,11 +144,11 @@ class Bounder {
     /// A combined node is drawn by its edges or by its stop edges. Each are an object of their own, and the
     /// node holds both, beside its terminal or proxy.
     void add_combined(NodeId id) {
-        const CutNode& node = cut_.nodes[id];
+        const DetailNode& node = cut_.nodes[id];
         for (const bool stop : {false, true}) {
             Object object;
             if (!(stop && node.terminal)) object.combination = node.combination;
-            for (const CutEdge& edge : stop ? node.stop_edges : node.edges)
+            for (const DetailEdge& edge : stop ? node.stop_edges : node.edges)
                 object.instances.push_back(instance_of(edge));
             if (object.instances.empty()) continue;
             Instance whole;
@@ -157,24 +157,24 @@ class Bounder {
         }
     }
 
-    bool needs_object(const CutEdge& edge) const {
+    bool needs_object(const DetailEdge& edge) const {
         return exact_ && !cut_.nodes[edge.child].primitive && !keeps_axes(edge.node_from_child.linear);
     }
 
-    Box box_of(const CutEdge& edge) const {
+    Box box_of(const DetailEdge& edge) const {
         const auto primitive = cut_.nodes[edge.child].primitive;
         if (primitive && *primitive != PrimitiveKind::plane)
             return box_of_image(*primitive, edge.node_from_child);
         return transformed(edge.node_from_child, boxes_[edge.child]);
     }
 
-    void add_object(const CutEdge& edge) {
+    void add_object(const DetailEdge& edge) {
         Object object;
         object.instances.push_back(instance_of(edge));
         graph_.objects.push_back(std::move(object));
     }
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     const Control& control_;
     bool exact_;
     const std::uint64_t most_pieces_;
@@ -185,7 +185,7 @@ class Bounder {
 
 } // namespace
 
-Affine graph_from_frame(const CutNode& node, const Box& box) {
+Affine graph_from_frame(const DetailNode& node, const Box& box) {
     // Sizes are kept in here, so that inverses are numbers too.
     constexpr double least_half = 1e-140, largest_half = 1e140;
     if (node.primitive || box.empty()) return {};
@@ -213,7 +213,7 @@ Box box_about_image(const Primitive& primitive, const Affine& place) {
     return box_by(primitive, place, reach ? reach : primitive_support);
 }
 
-DrawnBounds drawn_bounds(const CutGraph& cut, std::uint64_t most_pieces, const Control& control) {
+DrawnBounds drawn_bounds(const DetailGraph& cut, std::uint64_t most_pieces, const Control& control) {
     return Bounder(cut, most_pieces, control).run();
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "compiler/analysis/bounding.h"
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/support/bounds.h"
 #include "compiler/support/control.h"
 
@@ -22,7 +22,7 @@ struct DrawnBounds {
 
 /// The place of a node's own frame in the frame that the graph gives it: what the node draws, in `box`, fills
 /// the cube [-1, 1]^3 of its own or nearly so. Scaled by a power of two, so that maps keep their digits.
-Affine graph_from_frame(const CutNode& node, const Box& box);
+Affine graph_from_frame(const DetailNode& node, const Box& box);
 
 /// True if the box of the image is the image of the box.
 bool keeps_axes(const Mat3& m);
@@ -34,7 +34,7 @@ Box box_about_image(const Primitive& primitive, const Affine& place);
 
 /// Requires a graph whose cycles contract. O(graph), and about as many pieces as are allowed: fewer make
 /// larger boxes.
-DrawnBounds drawn_bounds(const CutGraph& cut, std::uint64_t most_pieces = graftal::most_pieces,
+DrawnBounds drawn_bounds(const DetailGraph& cut, std::uint64_t most_pieces = graftal::most_pieces,
                          const Control& control = no_control());
 
 } // namespace graftal

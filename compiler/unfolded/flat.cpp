@@ -35,7 +35,7 @@ std::array<float, 6> floats_of(const Box& box) {
 
 class Flattening {
   public:
-    Flattening(const CutGraph& cut, const DrawnBounds& bounds, std::size_t most_edges)
+    Flattening(const DetailGraph& cut, const DrawnBounds& bounds, std::size_t most_edges)
         : cut_(cut), bounds_(bounds), most_edges_(most_edges) {}
 
     std::optional<FlatGraph> run(double error_px) {
@@ -52,7 +52,7 @@ class Flattening {
 
   private:
     void add_node(NodeId id, double error_px) {
-        const CutNode& node = cut_.nodes[id];
+        const DetailNode& node = cut_.nodes[id];
         const Affine frame_from_graph = inverse(graph_from_frame_[id]);
         fits_ = fits_ && !node.sealed &&
                 flat_.edges.size() + edge_count(node, false) + node.stop_edges.size() <= most_edges_;
@@ -76,7 +76,7 @@ class Flattening {
         flat.first_edge = static_cast<std::uint32_t>(flat_.edges.size());
         for (const bool stop : {false, true}) {
             std::size_t next = 0;
-            for_each_edge(node, stop, [&](const CutEdge& edge) {
+            for_each_edge(node, stop, [&](const DetailEdge& edge) {
                 const auto& boxes = (stop ? bounds_.stop_edge : bounds_.edge)[id];
                 const Box box = node.cell && !stop
                                     ? box_of_image(*cut_.nodes[edge.child].primitive, edge.node_from_child)
@@ -90,7 +90,7 @@ class Flattening {
         flat_.nodes.push_back(flat);
     }
 
-    void add_edge(const CutEdge& edge, const Affine& frame_from_graph, const Box& box) {
+    void add_edge(const DetailEdge& edge, const Affine& frame_from_graph, const Box& box) {
         const Affine& graph_from_child = graph_from_frame_[edge.child];
         const Affine parent_from_child = frame_from_graph * edge.node_from_child * graph_from_child;
         fits_ = fits_ && !is_singular(parent_from_child);
@@ -119,7 +119,7 @@ class Flattening {
         return place->second;
     }
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     const DrawnBounds& bounds_;
     const std::size_t most_edges_;
     static constexpr double half_endless = flat_endless;

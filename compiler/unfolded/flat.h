@@ -53,8 +53,8 @@ struct FlatNode {
     std::uint32_t stop_edge_count = 0;   ///< those after: followed where it is cut; none: its proxy is drawn
     std::uint32_t primitive = flat_none; ///< of FlatGraph::primitives; then it has no edges
     std::uint32_t unending = 0;    ///< 1: cut where no level is left; planes and what holds them never are
-    std::uint32_t faint = 0;       ///< CutNode::shadowless
-    std::uint32_t widens = 0;      ///< CutNode::widens
+    std::uint32_t faint = 0;       ///< DetailNode::shadowless
+    std::uint32_t widens = 0;      ///< DetailNode::widens
     std::uint32_t terminal = 0;    ///< 1: below the stop edges, what names no material inherits `mean`
     std::array<float, 3> centre{}; ///< of the ball that decides how large it is, in its frame
     float diameter = 0;            ///< likewise

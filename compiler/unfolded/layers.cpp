@@ -18,17 +18,17 @@ namespace {
 constexpr std::size_t most_nodes = 5000;
 
 /// Largest scale of the last level, relative to the root.
-double last_scale(const CutGraph& cut, std::uint32_t root_steps) {
+double last_scale(const DetailGraph& cut, std::uint32_t root_steps) {
     double largest = 0;
-    for (const CutNode& node : cut.nodes)
-        for (const CutEdge& edge : node.edges)
+    for (const DetailNode& node : cut.nodes)
+        for (const DetailEdge& edge : node.edges)
             if (edge.levels > 0) largest = std::max(largest, edge.stretch);
     return std::pow(largest, root_steps);
 }
 
 class Layering {
   public:
-    explicit Layering(const CutGraph& cut) : cut_(cut) {}
+    explicit Layering(const DetailGraph& cut) : cut_(cut) {}
 
     LayeredGraph run(std::uint32_t root_steps) {
         result_.cut.root = copy_of(cut_.root, root_steps);
@@ -50,11 +50,11 @@ class Layering {
     }
 
     void fill(std::size_t copy) {
-        CutNode node = cut_.nodes[result_.source[copy]];
+        DetailNode node = cut_.nodes[result_.source[copy]];
         const std::uint32_t steps = steps_[copy];
         if (node.unending && steps == 0 && !node.unbounded && !node.sealed) node.edges.clear();
-        for (std::vector<CutEdge>* edges : {&node.edges, &node.stop_edges})
-            for (CutEdge& edge : *edges)
+        for (std::vector<DetailEdge>* edges : {&node.edges, &node.stop_edges})
+            for (DetailEdge& edge : *edges)
                 edge.child = copy_of(edge.child, steps >= edge.levels ? steps_below(steps, edge) : 0);
         if (node.cell) node.cell = copy_of(node.cell);
         result_.cut.nodes.push_back(std::move(node));
@@ -76,7 +76,7 @@ class Layering {
         return std::make_shared<const EdgeCell>(std::move(copy));
     }
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     LayeredGraph result_;
     std::vector<std::uint32_t> steps_; ///< by copy
     std::unordered_map<PieceKind, NodeId, PieceKindHash> copies_;
@@ -85,7 +85,7 @@ class Layering {
 
 } // namespace
 
-LayeredGraph layered(const CutGraph& cut, std::uint32_t root_steps) {
+LayeredGraph layered(const DetailGraph& cut, std::uint32_t root_steps) {
     constexpr double all_but_the_limit = 0.05;
     const bool few = root_steps < most_nodes && cut.nodes.size() * (root_steps + 1) <= most_nodes;
     if (few && last_scale(cut, root_steps) > all_but_the_limit) return Layering(cut).run(root_steps);

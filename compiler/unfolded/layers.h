@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 
 namespace graftal {
 
@@ -10,12 +10,12 @@ namespace graftal {
 /// have left. What is drawn with three levels left may be much less than the limit set, and so are its
 /// bounds: a tree that would grow for ever, cut after eight years.
 struct LayeredGraph {
-    CutGraph cut;               ///< its materials are left out
+    DetailGraph cut;            ///< its materials are left out
     std::vector<NodeId> source; ///< by node: which of the graph's it is
 };
 
 /// The layers for `root_steps` levels of the root. The graph itself if these are not limited, or so many
 /// that the picture is that of the limit set.
-LayeredGraph layered(const CutGraph& cut, std::uint32_t root_steps);
+LayeredGraph layered(const DetailGraph& cut, std::uint32_t root_steps);
 
 } // namespace graftal

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/graph/edge_cell.h"
 #include "compiler/graph/material.h"
 #include "compiler/scene/scene.h"

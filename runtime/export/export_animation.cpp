@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -59,6 +61,31 @@ Status write_frames(const AnimateOptions& animate, const std::vector<State>& sta
     return status.ok() ? file.pending().commit() : status;
 }
 
+/// Gives the whole steps done by a time between steps, where the drawing does not read the time: the session
+/// then knows moments of one state by their equal steps.
+class WholeSteps {
+  public:
+    explicit WholeSteps(PictureSession& session) : session_(session) {}
+
+    void give(StageOptions& compile) {
+        LowerOptions& lower = compile.lower;
+        if (!lower.time || lower.steps) return;
+        if (!is_asked_) {
+            Compilation compilation;
+            const std::shared_ptr<const AnalysedModel> model = session_.analysed(compile, compilation);
+            if (!model) return; // the export of the state says why
+            is_asked_ = true;
+            is_timed_ = !model->derivation || model->derivation->timed;
+        }
+        if (!is_timed_) lower.steps = static_cast<unsigned>(*lower.time);
+    }
+
+  private:
+    PictureSession& session_;
+    bool is_asked_ = false;
+    bool is_timed_ = true; ///< the model, whatever its moving values, once it is asked
+};
+
 } // namespace
 
 AnimationOutcome export_animation(PictureSession& session, const AnimateOptions& animate,
@@ -77,14 +104,18 @@ AnimationOutcome export_animation(PictureSession& session, const AnimateOptions&
         return fail(Status::failure(
             fmt::format("cannot make the folder '{}': {}", folder.string(), error.message())));
     std::vector<State> states;
-    std::string shown; // by the state before
-    std::shared_ptr<const ViewedModel> viewed;
+    WholeSteps whole_steps(session);
+    std::shared_ptr<const ViewedModel> viewed; // in the state before
     for (std::size_t frame = 0; frame < animate.frames; ++frame) {
         auto [compile, words] = moment_of(animate, static_cast<double>(frame));
-        if (!states.empty() && words == shown) {
+        whole_steps.give(compile);
+        Compilation compilation;
+        // The session gives the same value again where nothing that the model reads has changed.
+        if (viewed && session.viewed(compile, compilation) == viewed) {
             ++states.back().end;
             continue;
         }
+        compilation = Compilation();
         if (session.control().cancel.raised()) return fail(Status::failure("interrupted"));
         if (animate.on_progress)
             animate.on_progress({AnimationProgress::Stage::drawing, frame, animate.frames, {}, {}});
@@ -92,7 +123,6 @@ AnimationOutcome export_animation(PictureSession& session, const AnimateOptions&
         ExportModelOptions state = exported;
         state.compile = compile;
         state.file.output = (folder / name).string();
-        Compilation compilation;
         const std::optional<std::string> written = export_model(session, state, compilation);
         if (written) viewed = session.viewed(compile, compilation);
         if (!written || !viewed) {
@@ -102,7 +132,6 @@ AnimationOutcome export_animation(PictureSession& session, const AnimateOptions&
         }
         if (animate.on_compiled) animate.on_compiled(compilation);
         states.push_back({frame, frame + 1, (folder.filename() / name).generic_string()});
-        shown = std::move(words);
         ++outcome.drawn;
     }
     const Status status = write_frames(animate, states, viewed->view, exported.file.unit_mm.value_or(1000));

@@ -61,7 +61,7 @@ class Exporter {
         Compilation& compilation = attempt.compilation;
         const std::shared_ptr<const ViewedModel> viewed = session_.viewed(stages, compilation);
         if (!viewed) return attempt;
-        const std::shared_ptr<const PreparedCut> prepared = session_.prepared(stages, compilation);
+        const std::shared_ptr<const PreparedGraph> prepared = session_.prepared(stages, compilation);
         if (!prepared) return attempt;
         const Graph& graph = viewed->model->graph;
         if (refuse_combined(graph, fmt::format("a {} file", format_.extension), compilation.diagnostics))

@@ -8,11 +8,15 @@
 
 #include <fmt/format.h>
 
+#include "runtime/export/equal_nodes.h"
+
 namespace graftal {
 
 namespace {
 
 constexpr SceneId nothing = UINT32_MAX;
+/// The name that asks for all objects; none has it.
+constexpr std::string_view all_objects = "*";
 
 bool bears(std::string_view name, std::string_view asked) {
     return name == asked ||
@@ -25,6 +29,7 @@ std::optional<std::vector<bool>> named_parts(const UnfoldedScene& scene,
                                              Diagnostics& diagnostics) {
     std::vector<bool> is_named(scene.nodes.size(), false);
     for (const std::string& asked : names) {
+        if (asked == all_objects) continue;
         bool found = false;
         for (SceneId id = 0; id < scene.nodes.size(); ++id) {
             if (!bears(scene.nodes[id].name, asked)) continue;
@@ -79,10 +84,37 @@ class Halves {
     std::vector<SceneId> rest_, held_;
 };
 
+/// Lays what an object draws itself beside the objects that it places: as a part of its own, in the place of
+/// the first of those shapes. `held`: by node; what is held already stays whole.
+void hold_each_object(UnfoldedScene& scene, std::vector<bool>& held) {
+    const std::vector<SceneId> nodes = scene.masters_first;
+    held.resize(scene.nodes.size(), false);
+    for (const SceneId id : nodes) {
+        std::vector<ScenePart> drawn, all;
+        for (const ScenePart& part : scene.nodes[id].parts) {
+            const bool is_shape = scene.nodes[part.node].shape.has_value();
+            if (is_shape && drawn.empty()) all.emplace_back().node = static_cast<SceneId>(held.size());
+            (is_shape ? drawn : all).push_back(part);
+        }
+        if (held[id] || drawn.empty()) continue;
+        if (all.size() == 1) {
+            held[id] = true;
+            continue;
+        }
+        SceneNode own;
+        own.name = scene.nodes[id].name;
+        own.parts = std::move(drawn);
+        scene.nodes[id].parts = std::move(all);
+        scene.nodes.push_back(std::move(own));
+        held.push_back(true);
+    }
+}
+
 } // namespace
 
 std::optional<std::vector<bool>> hold_parts(UnfoldedScene& scene, const std::vector<std::string>& names,
                                             Span model, Diagnostics& diagnostics) {
+    unite_equal_nodes(scene);
     std::optional<std::vector<bool>> is_named = named_parts(scene, names, model, diagnostics);
     if (!is_named) return is_named;
     const Halves halves(scene, *is_named);
@@ -96,7 +128,10 @@ std::optional<std::vector<bool>> hold_parts(UnfoldedScene& scene, const std::vec
         scene.nodes.push_back(std::move(both));
         scene.root = static_cast<SceneId>(scene.nodes.size() - 1);
     }
+    sort_masters_first(scene);
     is_named->resize(scene.nodes.size(), false);
+    if (std::ranges::find(names, all_objects) == names.end()) return is_named;
+    hold_each_object(scene, *is_named);
     sort_masters_first(scene);
     return is_named;
 }

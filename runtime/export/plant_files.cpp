@@ -5,6 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -187,24 +190,42 @@ std::string decimal(double number) {
     return {digits, end};
 }
 
+/// The letters of a name. What has none is called by what it is: digits are spelled, and `{` is a polygon.
+std::string letters_of(std::string_view name) {
+    constexpr std::string_view digits[] = {"Zero", "One", "Two",   "Three", "Four",
+                                           "Five", "Six", "Seven", "Eight", "Nine"};
+    std::string letters, spelled;
+    for (const char c : name) {
+        if (std::isalpha(static_cast<unsigned char>(c))) letters += c;
+        if (c >= '0' && c <= '9') spelled += digits[c - '0'];
+        if (c == '{') spelled += "Polygon";
+    }
+    if (!letters.empty()) return letters == "P" ? "PPart" : letters; // P is the plant
+    return spelled.empty() ? "Part" : spelled;
+}
+
 /// Names of classes of vertices, letters only: digits are their indices. "" where no vertex has the name.
-std::vector<std::string> class_names(const Plant& plant) {
+/// Nothing where the pairs of them take more than `most_bytes` bytes.
+std::optional<std::vector<std::string>> class_names(const Plant& plant, std::uint64_t most_bytes) {
     std::vector<bool> used(plant.names.size());
     for (const PlantModule& module : plant.modules)
         if (is_vertex(module)) used[module.name] = true;
     std::vector<std::string> names;
+    std::unordered_set<std::string> taken;
+    std::unordered_map<std::string, std::size_t> longer; // by the letters: how much the last of them is
+    std::uint64_t bytes = 0;
     for (std::size_t i = 0; i < plant.names.size(); ++i) {
-        const std::string& name = plant.names[i];
-        std::string letters;
         if (!used[i]) {
             names.emplace_back();
             continue;
         }
-        for (const char c : name)
-            if (std::isalpha(static_cast<unsigned char>(c))) letters += c;
-        if (letters.empty() || letters == "P") letters += "Part";
-        while (std::ranges::find(names, letters) != names.end())
+        std::string letters = letters_of(plant.names[i]);
+        std::size_t& more = longer[letters];
+        letters.append(more, 'x');
+        for (; !taken.insert(letters).second; ++more)
             letters += 'x';
+        bytes += letters.size();
+        if (bytes * taken.size() > most_bytes) return std::nullopt;
         names.push_back(letters);
     }
     return names;
@@ -215,7 +236,9 @@ std::vector<std::string> class_names(const Plant& plant) {
 std::optional<std::string> mtg(const WrittenPlant& table, std::uint64_t most_bytes) {
     const Plant& plant = table.plant;
     const std::vector<Column> all = columns_of(table);
-    const std::vector<std::string> classes = class_names(plant);
+    const std::optional<std::vector<std::string>> named = class_names(plant, most_bytes);
+    if (!named) return std::nullopt;
+    const std::vector<std::string>& classes = *named;
     std::vector<std::string> used = classes;
     std::erase(used, "");
     const std::size_t parameters = most_parameters(plant);
@@ -227,9 +250,12 @@ std::optional<std::string> mtg(const WrittenPlant& table, std::uint64_t most_byt
     for (const std::string& name : used)
         text += name + "\t2\tFREE\tFREE\tEXPLICIT\n";
     text += "\nDESCRIPTION:\nLEFT\tRIGHT\tRELTYPE\tMAX\n";
+    const std::string every = fmt::format("{}", fmt::join(used, ","));
     for (const char* relation : {"<", "+"})
-        for (const std::string& name : used)
-            text += fmt::format("{}\t{}\t{}\t?\n", name, fmt::join(used, ","), relation);
+        for (const std::string& name : used) {
+            if (text.size() > most_bytes) return std::nullopt;
+            text += fmt::format("{}\t{}\t{}\t?\n", name, every, relation);
+        }
     text += "\nFEATURES:\nNAME\tTYPE\n";
     std::string features;
     for (const Column& column : all)
@@ -267,10 +293,29 @@ std::optional<std::string> mtg(const WrittenPlant& table, std::uint64_t most_byt
     return text;
 }
 
+/// A sentence about the classes whose names are not those of the model; "" if there are none.
+std::string renamed_classes(const Plant& plant) {
+    constexpr std::size_t most_told = 20;
+    const std::vector<std::string> classes = class_names(plant, UINT64_MAX).value();
+    std::vector<std::string> told;
+    std::size_t renamed = 0;
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+        if (classes[i].empty() || classes[i] == plant.names[i]) continue;
+        if (++renamed <= most_told) told.push_back(fmt::format("{} is '{}'", classes[i], plant.names[i]));
+    }
+    if (renamed == 0) return "";
+    if (renamed > most_told) told.push_back(fmt::format("and {} more", renamed - most_told));
+    return fmt::format("the classes of an .mtg have letters only: {}", fmt::join(told, ", "));
+}
+
+std::size_t vertices_of(const Plant& plant) {
+    return static_cast<std::size_t>(std::ranges::count_if(plant.modules, is_vertex));
+}
+
 constexpr PlantFormat formats[] = {
     {".csv", "a table, one row a module", csv},
     {".json", "the same as JSON", json},
-    {".mtg", "a multiscale tree graph, as OpenAlea reads it", mtg},
+    {".mtg", "a multiscale tree graph, as OpenAlea reads it", mtg, vertices_of, renamed_classes},
 };
 
 } // namespace
@@ -319,8 +364,13 @@ std::optional<std::string> export_plant(PictureSession& session, const RenderOpt
     }
     compilation.status = write_text(options.output, *text);
     if (!compilation.status.ok()) return std::nullopt;
-    std::string summary =
-        fmt::format("{} modules after {} steps", plant->modules.size(), shortest(plant->steps));
+    if (format.note)
+        if (const std::string note = format.note(*plant); !note.empty())
+            compilation.diagnostics.note(Span(), note);
+    const std::size_t rows = format.rows ? format.rows(*plant) : plant->modules.size();
+    std::string summary = fmt::format("{} modules after {} steps", rows, shortest(plant->steps));
+    if (const std::size_t parts = plant->modules.size() - rows; parts > 0)
+        summary += fmt::format(", without the {} that are drawn in their place", parts);
     if (lit)
         summary += fmt::format(", the light on {} organs by {} samples each", lit->lit_organs, lit->samples);
     return summary;

@@ -26,6 +26,9 @@ struct PlantFormat {
     std::string_view summary;
     /// The text of a file; nothing where it would have more bytes than that.
     std::optional<std::string> (*text)(const WrittenPlant& table, std::uint64_t most_bytes);
+    std::size_t (*rows)(const Plant& plant) = nullptr; ///< number of modules that a file has; null: all
+    std::string (*note)(const Plant& plant) =
+        nullptr; ///< what a file has in other words; "" or null: nothing
 };
 
 /// The format that the ending of a file's name asks for; null if there is none.

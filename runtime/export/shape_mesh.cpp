@@ -1,5 +1,6 @@
 #include "runtime/export/shape_mesh.h"
 
+#include <bit>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -8,6 +9,7 @@
 #include "compiler/environment/cell_grid.h"
 #include "compiler/primitives/tessellate.h"
 #include "compiler/primitives/texture_space.h"
+#include "compiler/support/id_table.h"
 #include "compiler/support/normal_map.h"
 
 namespace graftal {
@@ -40,6 +42,39 @@ std::vector<Vec3> welded(const std::vector<Vec3>& vertices) {
         if (is_new) corners.add(vertices[i] - box.min, i);
     }
     return places;
+}
+
+/// The numbers of a vertex, to be compared.
+std::array<double, 8> numbers_of(const ShapeMesh& mesh, std::size_t i) {
+    const Vec3 &at = mesh.vertices[i], &normal = mesh.normals[i];
+    return {at.x, at.y, at.z, normal.x, normal.y, normal.z, mesh.uv[i][0], mesh.uv[i][1]};
+}
+
+/// Makes one vertex of corners that agree in place, normal and texture point, in the order of the first of
+/// them: only those along the seams of a picture stay apart. O(n). Requires texture points.
+void unite_equal_corners(ShapeMesh& mesh) {
+    IdTable known;
+    std::uint32_t kept = 0;
+    std::vector<std::uint32_t> vertex_of(mesh.vertices.size());
+    for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+        const std::array<double, 8> numbers = numbers_of(mesh, i);
+        std::uint64_t hash = 0;
+        for (const double number : numbers)
+            hash = mixed(hash, std::bit_cast<std::uint64_t>(number + 0.0)); // zeros are equal
+        vertex_of[i] = known.find_or_add(
+            hash, kept, [&](std::uint32_t other) { return numbers_of(mesh, other) == numbers; });
+        if (vertex_of[i] != kept) continue;
+        mesh.vertices[kept] = mesh.vertices[i];
+        mesh.normals[kept] = mesh.normals[i];
+        mesh.uv[kept] = mesh.uv[i];
+        ++kept;
+    }
+    mesh.vertices.resize(kept);
+    mesh.normals.resize(kept);
+    mesh.uv.resize(kept);
+    for (auto& triangle : mesh.triangles)
+        for (std::uint32_t& corner : triangle)
+            corner = vertex_of[corner];
 }
 
 /// Each triangle has its own corners. `places`: of the shape's vertices.
@@ -83,6 +118,7 @@ const ShapeMesh& ShapeMeshes::of(std::uint32_t number, const SceneLook& look) {
         made = {std::move(places), mesh.normals, {}, mesh.triangles};
     else
         made = cornered(mesh, places, shape.primitive, has_picture(look) ? &space : nullptr);
+    if (!made.uv.empty()) unite_equal_corners(made);
     return made;
 }
 

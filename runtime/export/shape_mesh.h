@@ -11,7 +11,8 @@
 namespace graftal {
 
 /// A shape as files have it: each vertex with its normal, and with its place on the picture where there is
-/// one. A corner between flat faces is there once for each face.
+/// one. A corner between flat faces is there once for each face, and one on the seam of a picture once for
+/// each side.
 struct ShapeMesh {
     std::vector<Vec3> vertices;
     std::vector<Vec3> normals;                           ///< one a vertex, of unit length

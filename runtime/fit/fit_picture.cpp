@@ -25,7 +25,7 @@ Sampling sampling_for(bool sampled, const View& view, const PictureWishes& wishe
 
 } // namespace
 
-ShaderLimits limits_of(const PreparedCut& prepared, const View& view, const PictureWishes& wishes) {
+ShaderLimits limits_of(const PreparedGraph& prepared, const View& view, const PictureWishes& wishes) {
     constexpr double farthest_in_povray = 1e7;
     const Ball& ball = prepared.cut.nodes[prepared.cut.root].ball;
     DrawnExtent drawn;
@@ -54,7 +54,7 @@ std::optional<FittedModel> fit_picture(const PreparedView& prepared, const Pictu
                                        const PicturePlan& plan, const Workers& workers,
                                        const std::function<bool()>& cancelled,
                                        const std::function<void(const TraceModel&, double)>& on_first_look,
-                                       std::shared_ptr<TraceGround> ground) {
+                                       std::shared_ptr<TraceBasis> basis) {
     return fit_work(
         {.prepared = prepared.prepared,
          .view = prepared.viewed->view,
@@ -65,7 +65,7 @@ std::optional<FittedModel> fit_picture(const PreparedView& prepared, const Pictu
          .workers = &workers,
          .cancelled = cancelled,
          .on_first_look = on_first_look,
-         .ground = std::move(ground)});
+         .basis = std::move(basis)});
 }
 
 PictureFit fit_of(const FittedModel& fitted, ImageSize size) {

@@ -41,12 +41,12 @@ struct PictureFit {
 struct PreparedView {
     std::shared_ptr<const ViewedModel> viewed;
     DetailOptions detail;
-    std::shared_ptr<const PreparedCut> prepared;
+    std::shared_ptr<const PreparedGraph> prepared;
     ModelTextures textures;
 };
 
 /// Where POV-Ray's pictures end, and whether soft light is listed.
-ShaderLimits limits_of(const PreparedCut& prepared, const View& view, const PictureWishes& wishes);
+ShaderLimits limits_of(const PreparedGraph& prepared, const View& view, const PictureWishes& wishes);
 
 /// The native engine's plan for a view: the detail, with the work that goes for this light, and the wanted
 /// samples.
@@ -62,7 +62,7 @@ std::optional<FittedModel>
 fit_picture(const PreparedView& prepared, const PictureWishes& wishes, const PicturePlan& plan,
             const Workers& workers, const std::function<bool()>& cancelled,
             const std::function<void(const TraceModel&, double)>& on_first_look = {},
-            std::shared_ptr<TraceGround> ground = nullptr);
+            std::shared_ptr<TraceBasis> basis = nullptr);
 
 /// The values of a fitted model that model_of() needs to make it again, without a ray.
 PictureFit fit_of(const FittedModel& fitted, ImageSize size);

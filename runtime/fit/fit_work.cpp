@@ -196,14 +196,14 @@ class Fitting {
         options.error_px *= factor;
         if (options.error_world) *options.error_world *= factor;
         try {
-            if (!ground_) {
-                ground_ = ask_.ground
-                              ? ask_.ground
-                              : std::make_shared<TraceGround>(*ask_.prepared, options.work_seconds, cancel_);
-                tried_seconds_ += StagePrice::piece * static_cast<double>(ground_->bounds.pieces);
+            if (!basis_) {
+                basis_ = ask_.basis
+                             ? ask_.basis
+                             : std::make_shared<TraceBasis>(*ask_.prepared, options.work_seconds, cancel_);
+                tried_seconds_ += StagePrice::piece * static_cast<double>(basis_->bounds.pieces);
             }
             fitted_.model = std::make_unique<TraceModel>(ask_.prepared, ask_.view, options, ask_.textures,
-                                                         ground_, cancel_);
+                                                         basis_, cancel_);
             tried_seconds_ +=
                 slowness_ * (static_cast<double>(fitted_.model->weighed) / WorkRates::kinds +
                              static_cast<double>(fitted_.model->edges.size()) / WorkRates::trace_edges);
@@ -328,8 +328,8 @@ class Fitting {
     const double pixels_;
     const double work_seconds_; ///< for the rays, and for what is tried
     const double slowness_;     ///< of their steps
-    std::shared_ptr<TraceGround> ground_;
-    bool measured_ = false; ///< the shadows of the ground
+    std::shared_ptr<TraceBasis> basis_;
+    bool measured_ = false; ///< the shadows of the basis
     FittedModel fitted_;
     Price price_;       ///< of the model
     double factor_ = 1; ///< of its error

@@ -26,7 +26,7 @@ struct FittedModel {
 
 /// A picture that a model is fitted for.
 struct FitRequest {
-    std::shared_ptr<const PreparedCut> prepared;
+    std::shared_ptr<const PreparedGraph> prepared;
     const View& view;
     const DetailOptions& options;
     const ModelTextures& textures;
@@ -38,7 +38,7 @@ struct FitRequest {
     /// each pixel of its picture seems to take. Nothing that it does with the model changes the result,
     /// unless it has shells made.
     std::function<void(const TraceModel&, double)> on_first_look;
-    std::shared_ptr<TraceGround> ground = nullptr; ///< of `prepared`, or null: it is made anew
+    std::shared_ptr<TraceBasis> basis = nullptr; ///< of `prepared`, or null: it is made anew
 };
 
 /// Tries rays over the whole picture, and predicts what all of them take. Where that is more than

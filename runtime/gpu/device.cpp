@@ -13,7 +13,7 @@
 
 namespace graftal {
 
-using vulkan::Api, vulkan::failure;
+using vulkan::Api, vulkan::outcome;
 
 std::vector<GpuInfo> gpu_devices(std::string* why) {
     std::string reason = "Vulkan has no device here";
@@ -85,52 +85,42 @@ struct Gpu::Parts {
         most_buffer_bytes = facts.most_buffer_bytes;
         const std::uint32_t family = *instance.queue_family(physical);
         const float priority = 1;
-        VkDeviceQueueCreateInfo queues{};
-        queues.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
-        queues.queueFamilyIndex = family;
-        queues.queueCount = 1;
-        queues.pQueuePriorities = &priority;
-        VkDeviceCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-        info.queueCreateInfoCount = 1;
-        info.pQueueCreateInfos = &queues;
+        const VkDeviceQueueCreateInfo queues{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                             .queueFamilyIndex = family,
+                                             .queueCount = 1,
+                                             .pQueuePriorities = &priority};
         VkPhysicalDeviceVulkan12Features of_1_2 = vulkan::Instance::features_1_2();
         VkPhysicalDeviceFeatures features{};
         features.shaderInt64 = of_1_2.shaderBufferInt64Atomics = facts.atomics_64;
-        info.pNext = &of_1_2;
-        info.pEnabledFeatures = &features;
-        if (const VkResult result = api.vkCreateDevice(physical, &info, nullptr, &device);
-            result != VK_SUCCESS)
-            return failure("opening the device", result);
+        const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                      .pNext = &of_1_2,
+                                      .queueCreateInfoCount = 1,
+                                      .pQueueCreateInfos = &queues,
+                                      .pEnabledFeatures = &features};
+        Status status = outcome("opening the device", api.vkCreateDevice(physical, &info, nullptr, &device));
+        if (!status.ok()) return status;
         api.vkGetDeviceQueue(device, family, 0, &queue);
-        VkCommandPoolCreateInfo of_pool{};
-        of_pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-        of_pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-        of_pool.queueFamilyIndex = family;
-        if (const VkResult result = api.vkCreateCommandPool(device, &of_pool, nullptr, &pool);
-            result != VK_SUCCESS)
-            return failure("making a command pool", result);
-        VkCommandBufferAllocateInfo of_commands{};
-        of_commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-        of_commands.commandPool = pool;
-        of_commands.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-        of_commands.commandBufferCount = 1;
-        if (const VkResult result = api.vkAllocateCommandBuffers(device, &of_commands, &commands);
-            result != VK_SUCCESS)
-            return failure("making a command buffer", result);
-        VkFenceCreateInfo of_fence{};
-        of_fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-        if (const VkResult result = api.vkCreateFence(device, &of_fence, nullptr, &fence);
-            result != VK_SUCCESS)
-            return failure("making a fence", result);
+        const VkCommandPoolCreateInfo of_pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                              .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                              .queueFamilyIndex = family};
+        status = outcome("making a command pool", api.vkCreateCommandPool(device, &of_pool, nullptr, &pool));
+        if (!status.ok()) return status;
+        const VkCommandBufferAllocateInfo of_commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                                      .commandPool = pool,
+                                                      .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                                      .commandBufferCount = 1};
+        status =
+            outcome("making a command buffer", api.vkAllocateCommandBuffers(device, &of_commands, &commands));
+        if (!status.ok()) return status;
+        const VkFenceCreateInfo of_fence{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+        status = outcome("making a fence", api.vkCreateFence(device, &of_fence, nullptr, &fence));
+        if (!status.ok()) return status;
         if (instance.families(physical)[family].timestampValidBits >= 64) {
-            VkQueryPoolCreateInfo of_clock{};
-            of_clock.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-            of_clock.queryType = VK_QUERY_TYPE_TIMESTAMP;
-            of_clock.queryCount = 2;
-            if (const VkResult result = api.vkCreateQueryPool(device, &of_clock, nullptr, &clock);
-                result != VK_SUCCESS)
-                return failure("making a clock", result);
+            const VkQueryPoolCreateInfo of_clock{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                                 .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                                 .queryCount = 2};
+            status = outcome("making a clock", api.vkCreateQueryPool(device, &of_clock, nullptr, &clock));
+            if (!status.ok()) return status;
             tick_seconds = 1e-9 * instance.properties(physical).limits.timestampPeriod;
         }
         return make_buffer(stage_bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
@@ -140,13 +130,10 @@ struct Gpu::Parts {
     /// `by_host`: where the host reads and writes; else where the device does so fastest.
     Status make_buffer(VkDeviceSize size, VkBufferUsageFlags usage, bool by_host, Buffer& made) {
         const Api& api = instance.api;
-        VkBufferCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-        info.size = size;
-        info.usage = usage;
-        if (const VkResult result = api.vkCreateBuffer(device, &info, nullptr, &made.buffer);
-            result != VK_SUCCESS)
-            return failure("making a buffer", result);
+        const VkBufferCreateInfo info{
+            .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
+        Status status = outcome("making a buffer", api.vkCreateBuffer(device, &info, nullptr, &made.buffer));
+        if (!status.ok()) return status;
         VkMemoryRequirements needs{};
         api.vkGetBufferMemoryRequirements(device, made.buffer, &needs);
         constexpr VkMemoryPropertyFlags coherent =
@@ -161,21 +148,20 @@ struct Gpu::Parts {
                 if (!(needs.memoryTypeBits >> type & 1) ||
                     (memory.memoryTypes[type].propertyFlags & flags) != flags)
                     continue;
-                VkMemoryAllocateInfo of_memory{};
-                of_memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-                of_memory.allocationSize = needs.size;
-                of_memory.memoryTypeIndex = type;
+                const VkMemoryAllocateInfo of_memory{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                                     .allocationSize = needs.size,
+                                                     .memoryTypeIndex = type};
                 result = api.vkAllocateMemory(device, &of_memory, nullptr, &made.memory);
             }
-        if (result != VK_SUCCESS) return failure(fmt::format("a buffer of {} bytes", size), result);
-        if (result = api.vkBindBufferMemory(device, made.buffer, made.memory, 0); result != VK_SUCCESS)
-            return failure("binding memory", result);
-        if (!by_host) return {};
+        status = outcome(fmt::format("a buffer of {} bytes", size), result);
+        if (!status.ok()) return status;
+        status = outcome("binding memory", api.vkBindBufferMemory(device, made.buffer, made.memory, 0));
+        if (!status.ok() || !by_host) return status;
         void* mapped = nullptr;
-        if (result = api.vkMapMemory(device, made.memory, 0, VK_WHOLE_SIZE, 0, &mapped); result != VK_SUCCESS)
-            return failure("mapping memory", result);
+        status =
+            outcome("mapping memory", api.vkMapMemory(device, made.memory, 0, VK_WHOLE_SIZE, 0, &mapped));
         staged = static_cast<std::byte*>(mapped);
-        return {};
+        return status;
     }
 
     void free(Buffer& buffer) {
@@ -188,32 +174,29 @@ struct Gpu::Parts {
     /// Records commands by `record`, submits them and waits.
     template<typename Record> Status submit(const Record& record) {
         const Api& api = instance.api;
-        VkCommandBufferBeginInfo begin{};
-        begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-        begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+        const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                             .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
         VkResult result = api.vkBeginCommandBuffer(commands, &begin);
         if (result == VK_SUCCESS) {
             record();
             result = api.vkEndCommandBuffer(commands);
         }
-        VkSubmitInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-        info.commandBufferCount = 1;
-        info.pCommandBuffers = &commands;
+        const VkSubmitInfo info{
+            .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands};
         if (result == VK_SUCCESS) result = api.vkResetFences(device, 1, &fence);
         if (result == VK_SUCCESS) result = api.vkQueueSubmit(queue, 1, &info, fence);
         if (result == VK_SUCCESS) result = api.vkWaitForFences(device, 1, &fence, VK_TRUE, longest_wait_ns);
         is_stuck = result == VK_TIMEOUT;
         if (is_stuck) return Status::failure("GPU: the device takes too long for a part of the picture");
-        return result == VK_SUCCESS ? Status() : failure("running the kernel", result);
+        return outcome("running the kernel", result);
     }
 
     /// Lets the next command read what those before it write.
     void wait_for_writes() {
-        VkMemoryBarrier barrier{};
-        barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-        barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-        barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+        const VkMemoryBarrier barrier{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                                      .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
+                                      .dstAccessMask =
+                                          VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT};
         instance.api.vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                                           VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0,
                                           1, &barrier, 0, nullptr, 0, nullptr);
@@ -301,39 +284,36 @@ Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std:
     for (std::size_t i = 0; i < buffers; ++i)
         bindings.push_back(
             {static_cast<std::uint32_t>(i), parts_->kind_of(i), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
-    VkDescriptorSetLayoutCreateInfo of_set{};
-    of_set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    of_set.bindingCount = static_cast<std::uint32_t>(bindings.size());
-    of_set.pBindings = bindings.data();
+    const VkDescriptorSetLayoutCreateInfo of_set{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                                 .bindingCount = static_cast<std::uint32_t>(bindings.size()),
+                                                 .pBindings = bindings.data()};
     VkResult result = api.vkCreateDescriptorSetLayout(device, &of_set, nullptr, &parts_->set_layout);
     const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
-    VkPipelineLayoutCreateInfo of_layout{};
-    of_layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    of_layout.setLayoutCount = 1;
-    of_layout.pSetLayouts = &parts_->set_layout;
-    of_layout.pushConstantRangeCount = 1;
-    of_layout.pPushConstantRanges = &range;
+    const VkPipelineLayoutCreateInfo of_layout{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                               .setLayoutCount = 1,
+                                               .pSetLayouts = &parts_->set_layout,
+                                               .pushConstantRangeCount = 1,
+                                               .pPushConstantRanges = &range};
     if (result == VK_SUCCESS)
         result = api.vkCreatePipelineLayout(device, &of_layout, nullptr, &parts_->layout);
-    VkShaderModuleCreateInfo of_module{};
-    of_module.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-    of_module.codeSize = spirv.size_bytes();
-    of_module.pCode = spirv.data();
+    const VkShaderModuleCreateInfo of_module{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                             .codeSize = spirv.size_bytes(),
+                                             .pCode = spirv.data()};
     VkShaderModule module = VK_NULL_HANDLE;
     if (result == VK_SUCCESS) result = api.vkCreateShaderModule(device, &of_module, nullptr, &module);
-    VkComputePipelineCreateInfo of_pipeline{};
-    of_pipeline.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-    of_pipeline.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    of_pipeline.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    of_pipeline.stage.module = module;
-    of_pipeline.stage.pName = "main";
     std::vector<VkSpecializationMapEntry> entries;
     for (std::uint32_t i = 0; i < constants.size(); ++i)
         entries.push_back({i, 4 * i, 4});
     const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
                                               constants.size_bytes(), constants.data()};
-    of_pipeline.stage.pSpecializationInfo = &specialization;
-    of_pipeline.layout = parts_->layout;
+    const VkComputePipelineCreateInfo of_pipeline{
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                  .module = module,
+                  .pName = "main",
+                  .pSpecializationInfo = &specialization},
+        .layout = parts_->layout};
     if (result == VK_SUCCESS)
         result =
             api.vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &of_pipeline, nullptr, &parts_->pipeline);
@@ -341,21 +321,18 @@ Status Gpu::load(std::span<const std::uint32_t> spirv, std::size_t buffers, std:
     const std::array<VkDescriptorPoolSize, 2> sizes = {
         {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, static_cast<std::uint32_t>(buffers)},
          {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1}}};
-    VkDescriptorPoolCreateInfo of_pool{};
-    of_pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    of_pool.maxSets = 1;
-    of_pool.poolSizeCount = sizes.size();
-    of_pool.pPoolSizes = sizes.data();
+    const VkDescriptorPoolCreateInfo of_pool{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                             .maxSets = 1,
+                                             .poolSizeCount = sizes.size(),
+                                             .pPoolSizes = sizes.data()};
     if (result == VK_SUCCESS) result = api.vkCreateDescriptorPool(device, &of_pool, nullptr, &parts_->sets);
-    VkDescriptorSetAllocateInfo allocate{};
-    allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-    allocate.descriptorPool = parts_->sets;
-    allocate.descriptorSetCount = 1;
-    allocate.pSetLayouts = &parts_->set_layout;
+    const VkDescriptorSetAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                               .descriptorPool = parts_->sets,
+                                               .descriptorSetCount = 1,
+                                               .pSetLayouts = &parts_->set_layout};
     if (result == VK_SUCCESS) result = api.vkAllocateDescriptorSets(device, &allocate, &parts_->set);
-    if (result == VK_SUCCESS) return {};
-    parts_->kernel = {};
-    return failure("making the kernel", result);
+    if (result != VK_SUCCESS) parts_->kernel = {};
+    return outcome("making the kernel", result);
 }
 
 Status Gpu::add_buffer(std::span<const std::byte> bytes, std::size_t size) {
@@ -378,13 +355,12 @@ Status Gpu::add_buffer(std::span<const std::byte> bytes, std::size_t size) {
         if (Status status = parts.copy(buffer, at, piece, true); !status.ok()) return status;
     }
     const VkDescriptorBufferInfo info{buffer.buffer, 0, VK_WHOLE_SIZE};
-    VkWriteDescriptorSet write{};
-    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    write.dstSet = parts.set;
-    write.dstBinding = static_cast<std::uint32_t>(parts.buffers.size() - 1);
-    write.descriptorCount = 1;
-    write.descriptorType = parts.kind_of(parts.buffers.size() - 1);
-    write.pBufferInfo = &info;
+    const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                     .dstSet = parts.set,
+                                     .dstBinding = static_cast<std::uint32_t>(parts.buffers.size() - 1),
+                                     .descriptorCount = 1,
+                                     .descriptorType = parts.kind_of(parts.buffers.size() - 1),
+                                     .pBufferInfo = &info};
     api.vkUpdateDescriptorSets(parts.device, 1, &write, 0, nullptr);
     return {};
 }

@@ -7,7 +7,6 @@
 #include <span>
 #include <utility>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "compiler/detail/least_width.h"
@@ -178,11 +177,11 @@ void add_camera(const FlatRequest& request, Scene& scene) {
     scene.projection = {static_cast<float>(unit_px / std::max(detail.error_px, 1e-30)),
                         static_cast<float>(nearest_to_eye(request.prepared.cut)),
                         static_cast<float>(detail.error_world.value_or(0)), detail.culls() ? 1.0f : 0.0f};
-    const CutGraph& cut = request.prepared.cut;
+    const DetailGraph& cut = request.prepared.cut;
     double widest = 1;
-    for (const CutNode& node : cut.nodes)
+    for (const DetailNode& node : cut.nodes)
         if (node.primitive) widest = std::max(widest, widened_reach(*node.primitive));
-    const CutNode& root = cut.nodes[cut.root];
+    const DetailNode& root = cut.nodes[cut.root];
     const Projection projection(view, detail, detail.error_px, nearest_to_eye(cut));
     scene.widths =
         flat_four({std::min(least_half_width_px, detail.error_px) / std::max(detail.error_px, 1e-30), widest,

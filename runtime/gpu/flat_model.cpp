@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "compiler/primitives/sheet.h"
 #include "compiler/primitives/tapered.h"
 #include "compiler/primitives/tessellate.h"
 #include "compiler/primitives/texture_space.h"
@@ -220,14 +221,41 @@ class Flattener {
     std::vector<std::uint32_t> meshes_; ///< by primitive
 };
 
+/// Whether some solid is as thin as a sheet (sheet.h), or may be, stretched by the parts that hold it.
+bool has_sheets(const DetailGraph& cut) {
+    double flattest = 1; // of those parts
+    for (const DetailNode& node : cut.nodes)
+        for (const DetailEdge& edge : node.edges) {
+            const Vec3 sigma = singular_values(edge.node_from_child.linear);
+            if (!edge.similarity && !cut.nodes[edge.child].primitive)
+                flattest = std::min(flattest, sigma.z / sigma.x);
+        }
+    const auto is_sheet = [&](const DetailEdge& edge) {
+        const std::optional<Primitive>& primitive = cut.nodes[edge.child].primitive;
+        return !edge.similarity && primitive &&
+               sheet_of(*primitive, edge.node_from_child.linear, thickest_sheet / flattest);
+    };
+    return std::ranges::any_of(cut.nodes, [&](const DetailNode& node) {
+        bool found =
+            std::ranges::any_of(node.edges, is_sheet) || std::ranges::any_of(node.stop_edges, is_sheet);
+        if (node.cell && node.cell->flattest <= thickest_sheet / flattest)
+            node.cell->for_each([&](const CellEdge& edge) { found = found || is_sheet(edge); });
+        return found;
+    });
+}
+
 /// Parts of the model that no array of the kernel holds.
 std::string lack(const FlatRequest& request) {
     if (request.textures.of_ground) return "a picture on the ground";
     if (request.view.sun_of_haze()) return "shafts of light in haze";
-    for (const CutNode& node : request.prepared.cut.nodes) {
+    for (const DetailNode& node : request.prepared.cut.nodes) {
         if (node.sealed) return "a singular map";
         if (node.is_combined()) return "an intersection or a difference";
     }
+    const DetailGraph& cut = request.prepared.cut;
+    const auto lets_light_through = [](const Material& material) { return material.translucency > 0; };
+    if (std::ranges::any_of(cut.materials, lets_light_through) && has_sheets(cut))
+        return "translucent solids as thin as a sheet";
     if (request.detail.error_px > SelfShadows::lit_as_px)
         return "parts culled that are larger than half a pixel";
     if (request.limits.list || request.view.lights.size() > MOST_LAMPS) return "a long list of lights";
@@ -262,9 +290,9 @@ std::uint64_t FlatModel::bytes() const {
 std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why) {
     why = lack(request);
     if (!why.empty()) return std::nullopt;
-    const TraceGround ground(request.prepared, request.detail.work_seconds);
+    const TraceBasis basis(request.prepared, request.detail.work_seconds);
     std::uint64_t edges = 0;
-    for (const CutNode& node : ground.layers.cut.nodes)
+    for (const DetailNode& node : basis.layers.cut.nodes)
         edges += edge_count(node, false) + node.stop_edges.size();
     const std::uint64_t most_bytes = request.detail.memory_bytes;
     if (edges > std::min<std::uint64_t>(most_edges, most_bytes / bytes_an_edge)) {
@@ -272,7 +300,7 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
         return std::nullopt;
     }
     const std::optional<FlatGraph> graph =
-        flat_graph(ground.layers, ground.bounds, request.detail.error_px, most_edges);
+        flat_graph(basis.layers, basis.bounds, request.detail.error_px, most_edges);
     if (!graph) {
         why = "a singular map";
         return std::nullopt;
@@ -280,19 +308,18 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
     FlatModel flat;
     flat.features.pictured = std::ranges::any_of(request.textures.of_material,
                                                  [](const auto& texture) { return texture != nullptr; });
-    flat.features.paired = needs_pairs(request.view, ground.bounds.node[graph->root]);
+    flat.features.paired = needs_pairs(request.view, basis.bounds.node[graph->root]);
     constexpr double far = flat_endless;
-    const bool fits =
-        Flattener(*graph, flat)
-            .run(request.view.camera.location,
-                 ground.layers.cut.nodes[graph->root].unbounded ? Box{Vec3(-far), Vec3(far)}
-                                                                : ground.bounds.node[graph->root],
-                 request.prepared.root_steps, most_bytes);
+    const bool fits = Flattener(*graph, flat)
+                          .run(request.view.camera.location,
+                               basis.layers.cut.nodes[graph->root].unbounded ? Box{Vec3(-far), Vec3(far)}
+                                                                             : basis.bounds.node[graph->root],
+                               request.prepared.root_steps, most_bytes);
     if (!fits) {
         why = fmt::format("such fine meshes within {} MiB", most_bytes >> 20);
         return std::nullopt;
     }
-    flat.source = ground.layers.source;
+    flat.source = basis.layers.source;
     add_light(request, flat);
     return flat;
 }

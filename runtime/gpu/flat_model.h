@@ -44,7 +44,7 @@ struct FlatModel {
 
 /// A picture that the kernel is to draw.
 struct FlatRequest {
-    const PreparedCut& prepared;
+    const PreparedGraph& prepared;
     const View& view;
     const DetailOptions& detail;
     const ModelTextures& textures;

@@ -6,7 +6,6 @@
 #include <vulkan/vulkan_core.h>
 
 #define GRAFTAL_VULKAN_FUNCTIONS(FUNCTION)                                                                   \
-    FUNCTION(vkCreateInstance)                                                                               \
     FUNCTION(vkDestroyInstance)                                                                              \
     FUNCTION(vkEnumeratePhysicalDevices)                                                                     \
     FUNCTION(vkGetPhysicalDeviceFeatures2)                                                                   \

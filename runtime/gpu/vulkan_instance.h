@@ -36,7 +36,9 @@ inline PFN_vkGetInstanceProcAddr loader() {
     return entry;
 }
 
-inline Status failure(std::string_view what, VkResult result) {
+/// Success, or a failure that says what was tried.
+inline Status outcome(std::string_view what, VkResult result) {
+    if (result == VK_SUCCESS) return {};
     const std::string_view why = result == VK_ERROR_OUT_OF_DEVICE_MEMORY ? "the device has no memory left"
                                  : result == VK_ERROR_OUT_OF_HOST_MEMORY ? "no memory is left"
                                  : result == VK_ERROR_DEVICE_LOST        ? "the device was lost"
@@ -58,9 +60,8 @@ class Instance {
         const auto create = reinterpret_cast<PFN_vkCreateInstance>(entry(nullptr, "vkCreateInstance"));
         const VkApplicationInfo application{
             VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "graftal", 1, "graftal", 1, VK_API_VERSION_1_2};
-        VkInstanceCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-        info.pApplicationInfo = &application;
+        const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                        .pApplicationInfo = &application};
         VkInstance handle = VK_NULL_HANDLE;
         if (!create || create(&info, nullptr, &handle) != VK_SUCCESS) {
             why = "no driver of Vulkan 1.2 is installed";
@@ -120,17 +121,14 @@ class Instance {
 
     bool has_atomics_64(VkPhysicalDevice device) const {
         VkPhysicalDeviceVulkan12Features of_1_2 = features_1_2();
-        VkPhysicalDeviceFeatures2 features{};
-        features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-        features.pNext = &of_1_2;
+        VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                           .pNext = &of_1_2};
         api.vkGetPhysicalDeviceFeatures2(device, &features);
         return features.features.shaderInt64 && of_1_2.shaderBufferInt64Atomics;
     }
 
     static VkPhysicalDeviceVulkan12Features features_1_2() {
-        VkPhysicalDeviceVulkan12Features features{};
-        features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-        return features;
+        return {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     }
 
     std::vector<VkQueueFamilyProperties> families(VkPhysicalDevice device) const {

@@ -149,7 +149,8 @@ void Model::threads(int count) {
 }
 
 void Model::antialias(std::optional<int> depth) {
-    parts_->options.antialias = depth;
+    constexpr int deepest = 9;
+    parts_->options.antialias = depth ? std::optional(std::clamp(*depth, 1, deepest)) : std::nullopt;
 }
 
 void Model::quality(Quality quality) {

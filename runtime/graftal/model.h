@@ -183,7 +183,8 @@ struct ExportSettings {
     /// warning, until the file has no more. With this default it has 128 MiB then. Else graftal refuses it.
     std::uint64_t most_bytes = std::uint64_t{1} << 30;
     bool irradiance = false; ///< `.csv`, `.json` and `.mtg`: the light on each organ, too
-    /// glTF, pbrt and Mitsuba: names of objects that stay meshes of their own, such as the leaves of a tree.
+    /// glTF, pbrt and Mitsuba: names of objects that stay meshes of their own, such as the leaves of a tree;
+    /// `*`: what each object draws itself.
     std::vector<std::string> parts;
 };
 
@@ -225,14 +226,16 @@ class GRAFTAL_API Model {
     void camera(const Camera& camera);
     /// The radius of the camera's lens, 0 for none, and the place that is sharp; nothing: as the model says.
     void lens(std::optional<double> aperture, const std::optional<Vector>& focus);
-    void size(int width, int height);         ///< in pixels, each at least 1; 1280 x 720 before
-    void zoom(std::optional<double> factor);  ///< about the point looked at. Requires a positive factor
-    void error_px(double pixels);             ///< graftal leaves out smaller parts; 0: none; 0.5 before
-    void memory(std::uint64_t bytes);         ///< most bytes for drawing; 2 GiB before
-    void work(double seconds);                ///< of one processor that a picture may take
-    void threads(int count);                  ///< 0, as before: one a processor
-    void antialias(std::optional<int> depth); ///< up to 4^(depth - 1) samples a pixel; nothing: one
-    void quality(Quality quality);            ///< how closely soft light is followed; normal before
+    void size(int width, int height);        ///< in pixels, each at least 1; 1280 x 720 before
+    void zoom(std::optional<double> factor); ///< about the point looked at. Requires a positive factor
+    void error_px(double pixels);            ///< graftal leaves out smaller parts; 0: none; 0.5 before
+    void memory(std::uint64_t bytes);        ///< most bytes for drawing; 2 GiB before
+    void work(double seconds);               ///< of one processor that a picture may take
+    void threads(int count);                 ///< 0, as before: one a processor
+    /// Up to 4^(depth - 1) samples a pixel, of a depth from 1 to 9 (others count as the nearest); nothing:
+    /// one.
+    void antialias(std::optional<int> depth);
+    void quality(Quality quality); ///< how closely soft light is followed; normal before
     /// Files that the model names, and the model itself, must lie in this folder; "": anywhere.
     void root(std::string folder);
 

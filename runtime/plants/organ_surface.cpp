@@ -14,7 +14,7 @@ namespace graftal {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double thickness_of_taper = 1.0 / 128, thickness_of_disc = 1e-3;
+constexpr double thickness_of_taper = 1.0 / 128, half_thickness_of_disc = 0.5e-3;
 
 } // namespace
 
@@ -32,7 +32,7 @@ OrganSurface::OrganSurface(const Plant& plant, std::uint32_t module, const Plant
         break;
     case Organ::disc:
         area_ = module_.area;
-        thickness_ = thickness_of_disc * width;
+        thickness_ = half_thickness_of_disc * width;
         flat_ = true;
         break;
     case Organ::polygon:

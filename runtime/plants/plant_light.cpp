@@ -189,7 +189,8 @@ class PlantLighting {
             light.organs[organs_[i].module] = {
                 static_cast<float>(sums.light / samples),
                 static_cast<float>(error_of(sums.light, sums.light_squares, samples)),
-                static_cast<float>(sums.absorbed / samples), static_cast<float>(sums.sunlit / samples)};
+                static_cast<float>(sums.absorbed / samples),
+                light.has_sun ? static_cast<float>(sums.sunlit / samples) : unknown_light};
         }
         light.falls.error = std::sqrt(falls);
         light.absorbed.error = std::sqrt(absorbed);

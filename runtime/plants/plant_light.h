@@ -23,12 +23,12 @@ struct PlantLightOptions {
 /// area of one side; of others it is the mean over the surface. No numbers where nothing is known.
 struct OrganLight {
     float light;    ///< irradiance, with what other organs scatter
-    float error;    ///< its standard error, at most
+    float error;    ///< its standard error, as its samples show it: it lacks what is so rare that none met it
     float absorbed; ///< the part of it that the organ takes
-    float sunlit;   ///< share of the surface that the brightest sun shines on
+    float sunlit;   ///< share of the surface that the brightest sun shines on; no number without a sun
 };
 
-/// An amount of light, in units of what falls on a unit of open ground; and its standard error, at most.
+/// An amount of light, in units of what falls on a unit of open ground; and its standard error, likewise.
 struct LightAmount {
     double amount = 0, error = 0;
 };

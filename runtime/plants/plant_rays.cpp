@@ -22,11 +22,6 @@ double sum(Rgb rgb) {
     return rgb.r + rgb.g + rgb.b;
 }
 
-/// The normal on the side that the ray comes from.
-Vec3 facing(const SurfaceHit& hit, const Ray& ray) {
-    return glm::dot(hit.normal, ray.direction) > 0 ? -hit.normal : hit.normal;
-}
-
 } // namespace
 
 PlantRays::PlantRays(const TraceModel& model, const PlantSky& sky) : sky_(sky), traversal_(model) {
@@ -82,16 +77,29 @@ Vec3 PlantRays::towards(const PlantSky::Sun& sun, SampleStream& random) const {
     return glm::normalize(sun.to + radius * (std::cos(turn) * a + std::sin(turn) * b));
 }
 
+PlantRays::Met PlantRays::met_by(const Ray& ray, const SurfaceHit& hit) {
+    return {ray(hit.t), glm::dot(hit.normal, ray.direction) > 0 ? -hit.normal : hit.normal, hit.to_far_side};
+}
+
+/// The start of rays that leave a surface on the normal's side, or on the other.
+Vec3 PlantRays::start_on(const Met& met, bool other_side) const {
+    return other_side ? met.point + met.to_far_side - gap_ * met.normal : met.point + gap_ * met.normal;
+}
+
+Ray PlantRays::scattered_from(const Met& met, bool passes, SampleStream& random) const {
+    return {start_on(met, passes),
+            formulas::cosine_direction(passes ? -met.normal : met.normal, random.next())};
+}
+
 /// Light of the suns on a surface, times `front` where it falls on the normal's side and `back` on the other.
-Rgb PlantRays::of_suns(Vec3 point, Vec3 normal, Rgb front, Rgb back, SampleStream& random) {
+Rgb PlantRays::of_suns(const Met& met, Rgb front, Rgb back, SampleStream& random) {
     Rgb light(0.0);
     for (const PlantSky::Sun& sun : sky_.suns) {
         const Vec3 to = towards(sun, random);
-        const double along = glm::dot(normal, to);
+        const double along = glm::dot(met.normal, to);
         const Rgb share = std::abs(along) * (along > 0 ? front : back);
         if (!(sum(share) > 0)) continue;
-        const Vec3 side = along > 0 ? normal : -normal;
-        if (is_lit(point + gap_ * side, to)) light += share * sun.rgb;
+        if (is_lit(start_on(met, !(along > 0)), to)) light += share * sun.rgb;
     }
     return light;
 }
@@ -102,16 +110,15 @@ Rgb PlantRays::scattered(Ray ray, SurfaceHit hit, SampleStream& random) {
     Rgb light(0.0), weight(1.0);
     for (int i = 0; i < most_scatterings; ++i) {
         const Finish finish = finish_of(hit);
-        const Vec3 normal = facing(hit, ray), point = ray(hit.t);
-        light += weight * of_suns(point, normal, finish.reflected, finish.passed, random);
+        const Met met = met_by(ray, hit);
+        light += weight * of_suns(met, finish.reflected, finish.passed, random);
         const glm::dvec2 choice = random.next();
         const bool passes = scatter(weight, finish, choice.x);
         // Russian roulette: few ways go on, and count for those that do not.
         const double goes_on = std::min(1.0, sum(weight) / 3);
         if (!(goes_on > 0) || choice.y >= goes_on) return light;
         weight /= goes_on;
-        const Vec3 pole = passes ? -normal : normal;
-        ray = {point + gap_ * pole, formulas::cosine_direction(pole, random.next())};
+        ray = scattered_from(met, passes, random);
         if (!closest(ray, {}, hit)) return light + weight * sky_.radiance(ray.direction);
     }
     return light;
@@ -126,12 +133,11 @@ void PlantRays::follow(Ray ray, Rgb weight, SampleStream& random, OrganSample& s
             (ray.direction.y > 0 ? sample.to_sky : sample.to_ground) += mean(weight);
             return;
         }
-        const Vec3 normal = facing(hit, ray), point = ray(hit.t);
+        const Met met = met_by(ray, hit);
         const double before = mean(weight);
         const bool passes = scatter(weight, finish_of(hit), random.next().x);
         sample.taken += before - mean(weight);
-        const Vec3 pole = passes ? -normal : normal;
-        ray = {point + gap_ * pole, formulas::cosine_direction(pole, random.next())};
+        ray = scattered_from(met, passes, random);
     }
     sample.left += mean(weight);
 }
@@ -142,7 +148,8 @@ OrganSample PlantRays::sample(const OrganSurface& organ, std::uint64_t seed, std
     traversal_.begin_path();
     OrganSample sample;
     auto [point, normal] = organ.at(random.next());
-    const double lift = std::max(gap_, organ.thickness());
+    // Rays start as near to what is flat as may be: organs that touch it shade it.
+    const double lift = organ.is_flat() ? organ.thickness() + gap_ : std::max(gap_, organ.thickness());
     // The ray from just outside meets what is drawn there.
     Finish finish;
     SurfaceHit hit;

@@ -43,13 +43,22 @@ class PlantRays {
         Rgb reflected{0.0}, passed{0.0};
     };
 
+    /// Where light meets a surface. The normal is on the side that it comes from.
+    struct Met {
+        Vec3 point{0.0}, normal{0, 1, 0};
+        Vec3 to_far_side{0.0}; ///< SurfaceHit's
+    };
+
     static Finish finish_of(const SurfaceHit& hit);
+    static Met met_by(const Ray& ray, const SurfaceHit& hit);
     static bool scatter(Rgb& weight, const Finish& finish, double choice);
     bool closest(const Ray& ray, const RayRange& range, SurfaceHit& hit);
     bool is_lit(Vec3 point, Vec3 direction);
     Vec3 towards(const PlantSky::Sun& sun, SampleStream& random) const;
     double mean(Rgb light) const { return (light.r + light.g + light.b) / (3 * open_); }
-    Rgb of_suns(Vec3 point, Vec3 normal, Rgb front, Rgb back, SampleStream& random);
+    Vec3 start_on(const Met& met, bool other_side) const;
+    Ray scattered_from(const Met& met, bool passes, SampleStream& random) const;
+    Rgb of_suns(const Met& met, Rgb front, Rgb back, SampleStream& random);
     Rgb scattered(Ray ray, SurfaceHit hit, SampleStream& random);
     void follow(Ray ray, Rgb weight, SampleStream& random, OrganSample& sample);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <utility>
 
 namespace graftal {
@@ -122,10 +123,10 @@ void PovrayMessageReader::close_message() {
     const std::string text = *std::exchange(pending_, std::nullopt);
     log_.illegal_matrix |= text.find("Illegal matrix column") != std::string::npos;
     log_.no_objects |= text.find("No objects in scene") != std::string::npos;
-    if (log_.messages.size() < PovrayLog::max_messages) read_message(text);
+    read_message(text);
 }
 
-bool PovrayMessageReader::read_message(std::string_view text) {
+void PovrayMessageReader::read_message(std::string_view text) {
     PovrayMessage message;
     take_place(text, message);
     for (const auto& [word, kind] : message_words) {
@@ -133,10 +134,20 @@ bool PovrayMessageReader::read_message(std::string_view text) {
         if (!word.starts_with("Fatal")) text.remove_prefix(word.size());
         message.kind = kind;
         message.text = without_blanks(text);
-        log_.messages.push_back(std::move(message));
-        return true;
+        return keep(std::move(message));
     }
-    return false;
+}
+
+void PovrayMessageReader::keep(PovrayMessage message) {
+    std::vector<PovrayMessage>& kept = log_.messages;
+    if (kept.size() == PovrayLog::max_messages) {
+        const auto lesser = std::find_if(kept.rbegin(), kept.rend(), [&](const PovrayMessage& other) {
+            return other.kind < message.kind;
+        });
+        if (lesser == kept.rend()) return;
+        kept.erase(std::prev(lesser.base()));
+    }
+    kept.push_back(std::move(message));
 }
 
 bool PovrayMessageReader::read_progress(std::string_view line) {

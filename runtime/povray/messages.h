@@ -13,6 +13,7 @@
 namespace graftal {
 
 struct PovrayMessage {
+    /// The more serious, the later.
     enum class Kind {
         warning,
         possible_error, ///< POV-Ray's own term; an error only if the run fails
@@ -36,7 +37,8 @@ struct PovrayProgress {
 
 /// All that the driver needs to know of one run.
 struct PovrayLog {
-    /// More are dropped: a scene of a million placements can give a million warnings.
+    /// More are dropped: a scene of a million placements can give a million warnings. An error, which comes
+    /// last, takes the place of a warning.
     static constexpr std::size_t max_messages = 100;
 
     std::vector<PovrayMessage> messages;
@@ -65,7 +67,8 @@ class PovrayMessageReader {
     bool continues_message(std::string_view line) const;
     void close_message();
     bool read_progress(std::string_view line);
-    bool read_message(std::string_view line);
+    void read_message(std::string_view line);
+    void keep(PovrayMessage message);
     void read_statistics(std::string_view line);
     void report(PovrayProgress progress);
 

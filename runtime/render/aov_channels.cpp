@@ -28,10 +28,10 @@ constexpr Layer layers[] = {{"CryptoObject", &PixelMattes::objects},
 
 constexpr std::size_t ids_a_channel = 2;
 
-std::set<std::string_view> names_of(const Layer& layer, const CutGraph& cut, const View& view) {
+std::set<std::string_view> names_of(const Layer& layer, const DetailGraph& cut, const View& view) {
     std::set<std::string_view> names;
     if (layer.shares == &PixelMattes::objects) {
-        for (const CutNode& node : cut.nodes)
+        for (const DetailNode& node : cut.nodes)
             names.insert(node.name);
         names.insert(object_name(cut, ground_node));
         return names;
@@ -67,7 +67,7 @@ void append_mattes(const PixelMattes& mattes, std::vector<float>& samples) {
 /// The tags that name the layers and the ids that are seen, as "cryptomatte/..." and text. The names are
 /// those of the graph and of the ground.
 std::vector<std::pair<std::string, std::string>> matte_tags(const std::vector<PixelMattes>& picture,
-                                                            const CutGraph& cut, const View& view) {
+                                                            const DetailGraph& cut, const View& view) {
     constexpr std::size_t key_digits = 7;
     std::vector<std::pair<std::string, std::string>> tags;
     for (const Layer& layer : layers) {
@@ -79,18 +79,20 @@ std::vector<std::pair<std::string, std::string>> matte_tags(const std::vector<Pi
         for (const std::string_view name : names_of(layer, cut, view))
             if (const std::uint32_t id = matte_id(name); seen.contains(id))
                 manifest[std::string(name)] = hex_of(id);
+        // A name that is no UTF-8 must not end the picture.
+        const std::string text = manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
         const std::string key = "cryptomatte/" + hex_of(matte_id(layer.name)).substr(0, key_digits) + "/";
         tags.insert(tags.end(), {{key + "name", std::string(layer.name)},
                                  {key + "hash", "MurmurHash3_32"},
                                  {key + "conversion", "uint32_to_float32"},
-                                 {key + "manifest", manifest.dump()}});
+                                 {key + "manifest", text}});
     }
     return tags;
 }
 
 } // namespace
 
-MoreChannels aov_channels(const AovPicture& aovs, const CutGraph& cut, const View& view, bool alpha) {
+MoreChannels aov_channels(const AovPicture& aovs, const DetailGraph& cut, const View& view, bool alpha) {
     const ObjectNumbers numbers(cut);
     MoreChannels more;
     more.names = {"coverage", "Z",        "normal.X", "normal.Y", "normal.Z",

@@ -146,7 +146,7 @@ Draft first_draft(const TraceModel& model, const Sampling& finest, double sample
     options.error_px *= coarser;
     if (options.error_world) *options.error_world *= coarser;
     draft.rough =
-        std::make_unique<TraceModel>(model.shared, model.view, options, model.textures, model.ground);
+        std::make_unique<TraceModel>(model.shared, model.view, options, model.textures, model.basis);
     draft.rough->most_visits = std::min(model.most_visits, most_visits);
     // Nothing takes this look from the work of the picture: beyond a share of it, shells are left out.
     draft.rough->meshes.make_until(

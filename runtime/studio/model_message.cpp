@@ -2,12 +2,14 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "compiler/editing/positions.h"
 #include "compiler/session/stages.h"
 #include "compiler/session/stats.h"
 #include "compiler/support/number_range.h"
+#include "compiler/support/path_text.h"
 #include "runtime/studio/text_asks.h"
 
 namespace graftal {
@@ -27,12 +29,46 @@ Span written(const Span& span, const SourceMap& sources) {
     return sources.origin(span);
 }
 
+/// The model's own file: the one that was read first, and that the page shows.
+constexpr FileId own_file = 0;
+
+/// The place in the model's own text that names another file; unknown where it only names one that does.
+Span naming(FileId file, const SourceMap& sources) {
+    const std::string_view text = sources.text(own_file);
+    for (std::size_t begin = text.find('"'); begin < text.size();) {
+        const std::size_t end = text.find_first_of("\"\n", begin + 1);
+        if (end >= text.size()) break;
+        const std::string_view path = text.substr(begin + 1, end - begin - 1);
+        if (text[end] == '"' && path_beside(sources.name(own_file), path) == sources.name(file))
+            return {own_file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end + 1)};
+        begin = text.find('"', end + 1);
+    }
+    return {};
+}
+
+/// The place in the model's own text by which it uses the file of a finding; unknown where nobody tells.
+Span use_of(const Diagnostic& finding, FileId file, const SourceMap& sources) {
+    for (const Note& note : finding.notes) {
+        const Span span = written(note.span, sources);
+        if (span.known() && span.file == own_file) return span;
+    }
+    return naming(file, sources);
+}
+
 nlohmann::json finding_json(const Diagnostic& finding, const SourceMap& sources) {
-    const Span span = written(finding.span, sources);
+    Span span = written(finding.span, sources);
+    std::string text = finding.message;
+    if (span.known() && span.file != own_file) {
+        text = fmt::format("{}, line {}: {}", sources.name(span.file),
+                           sources.position(span.file, span.begin).line, text);
+        span = use_of(finding, span.file, sources);
+    }
     nlohmann::json json{{"severity", name_of(finding.severity)},
                         {"file", span.known() ? std::string(sources.name(span.file)) : ""},
-                        {"text", finding.message},
-                        {"hint", finding.hint}};
+                        {"text", text},
+                        {"hint", finding.hint},
+                        {"from", 0},
+                        {"to", 0}};
     add_place(json, span, sources);
     return json;
 }
@@ -102,6 +138,21 @@ nlohmann::json findings_message(std::uint32_t number, const Compilation& compila
     return {{"type", "findings"}, {"number", number}, {"findings", std::move(findings)}};
 }
 
+nlohmann::json pass_message(std::uint32_t number, const ShownPass& shown) {
+    const auto or_null = [](const std::optional<double>& value) {
+        return value ? nlohmann::json(*value) : nlohmann::json();
+    };
+    return {{"type", "pass"},
+            {"number", number},
+            {"pass", shown.pass},
+            {"samples", shown.samples},
+            {"seconds_left", or_null(shown.seconds_left)},
+            {"noise_255", or_null(shown.noise_255)},
+            {"error_px", shown.error_px},
+            {"whole_seconds", or_null(shown.whole_seconds)},
+            {"done", shown.done}};
+}
+
 nlohmann::json model_message(const StudioState& state, const LoweredModel& lowered,
                              const AnalysedModel& analysed, const ViewedModel& viewed,
                              const SourceMap& sources) {
@@ -117,7 +168,9 @@ nlohmann::json model_message(const StudioState& state, const LoweredModel& lower
         {"camera",
          camera_json(viewed.view.camera, distance_of(viewed, state.stages.view.zoom.zoom.has_value()))},
         {"box", box_json(box)},
-        {"stats", nlohmann::json::parse(stats_json(analysed, levels, sources))}};
+        {"stats", nlohmann::json::parse(stats_json(analysed, levels, sources))},
+        {"chance", lowered.notes.asks_chance},
+        {"grows", !lowered.notes.derivation || lowered.notes.derivation->grows}};
     add_maps(message, state, analysed);
     return message;
 }

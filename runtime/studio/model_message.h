@@ -5,18 +5,22 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/session/session.h"
+#include "runtime/studio/picture/progressive_picture.h"
 #include "runtime/studio/studio_state.h"
 
 namespace graftal {
 
-/// The message `findings`. Offsets count UTF-16 units of the file that a finding names; the model's own is
-/// its name.
+/// The message `findings`. Offsets count UTF-16 units of the model's own text: a finding in a file that it
+/// uses has the place that names this file.
 nlohmann::json findings_message(std::uint32_t number, const Compilation& compilation);
 
 /// The message `model` without its maps (docs/studio.md).
 nlohmann::json model_message(const StudioState& state, const LoweredModel& lowered,
                              const AnalysedModel& analysed, const ViewedModel& viewed,
                              const SourceMap& sources);
+
+/// The message `pass`.
+nlohmann::json pass_message(std::uint32_t number, const ShownPass& shown);
 
 /// A camera as the page says it, which looks at a point this far away.
 nlohmann::json camera_json(const Camera& camera, double distance);

@@ -23,6 +23,9 @@ class Pointer {
     /// The state that it is asked about. Requires a text.
     void look_at(const StudioState& state) { state_ = state; }
 
+    /// Files that the model names are read again.
+    void forget_files() { session_.reset(); }
+
     /// The answer to `pick`; an empty object for the background. Throws BadMessage.
     nlohmann::json pick(double x, double y);
 

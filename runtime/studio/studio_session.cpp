@@ -42,10 +42,18 @@ nlohmann::json fault_message(const std::string& text) {
     return {{"type", "fault"}, {"text", text}};
 }
 
+/// Work for the rays of a thumbnail, and for the model that they go through, whatever it took to prepare
+/// that: a sample a pixel of a dear model. Less would make its parts so coarse that all models look alike.
+double thumbnail_seconds(ImageSize size) {
+    constexpr double of_model = 1.5, of_pixel = 30e-6;
+    return of_model + of_pixel * size.width * size.height;
+}
+
 } // namespace
 
 StudioSession::StudioSession(StudioHome& home, StudioSink& sink, std::function<void()> wake)
     : home_(home), sink_(sink), wake_(std::move(wake)),
+      files_(home.files(), [this](const std::string& path) { used_[path] = home_.files().stamp(path); }),
       pointer_(home, CancelFlag([this] { return outdated(); })) {}
 
 void StudioSession::hear(std::string_view message) {
@@ -169,7 +177,9 @@ void StudioSession::take_state() {
 bool StudioSession::prepare(ModelSession& model, StudioState& state, PreparedView& prepared,
                             Compilation& compilation) {
     if (!model.session || model.name != state.name) {
-        model = {std::make_unique<Session>(state.name, home_.files()), state.name, std::nullopt};
+        model.session = std::make_unique<Session>(state.name, model.files);
+        model.name = state.name;
+        model.text = std::nullopt;
         home_.equip(*model.session);
         model.session->set_control({CancelFlag([this] { return outdated(); }), {}});
     }
@@ -192,11 +202,35 @@ bool StudioSession::prepare(ModelSession& model, StudioState& state, PreparedVie
     return !outdated() && prepared.prepared;
 }
 
+/// Has the stages read files again, if one that the model names changed.
+bool StudioSession::reload_files() {
+    const auto is_other = [&](const auto& used) { return home_.files().stamp(used.first) != used.second; };
+    if (!model_.session || std::ranges::none_of(used_, is_other)) return false;
+    model_.session->reload(true);
+    thumbnail_model_.session.reset();
+    pointer_.forget_files();
+    film_framing_ = {};
+    return true;
+}
+
+void StudioSession::look_at_files() try {
+    if (!reload_files() || stage_ == Stage::compile) return;
+    picture_ = nullptr;
+    stage_ = Stage::compile;
+} catch (const std::bad_alloc&) { // the next look finds it again
+}
+
 void StudioSession::compile() {
     const bool is_same_text = model_.session && model_.name == state_.name && model_.text == state_.text;
+    reload_files();
     compilation_ = {};
     PreparedView prepared;
+    const Session* const session_before = model_.session.get();
+    const std::uint64_t lowered_before = runs().lowered;
+    std::map<std::string, FileStamp> used_before = std::exchange(used_, {});
     const bool is_drawn = prepare(model_, state_, prepared, compilation_);
+    const bool is_read = model_.session.get() != session_before || runs().lowered != lowered_before;
+    if (!is_read) used_ = std::move(used_before); // it has asked for none again
     if (outdated()) return;
     send(findings_message(state_.number, compilation_));
     const std::vector<std::string> engines = home_.engines();
@@ -207,10 +241,10 @@ void StudioSession::compile() {
     described_ = false;
     stage_ = is_drawn ? Stage::picture : Stage::nothing;
     if (!is_drawn) return;
-    if (std::exchange(ground_of_, prepared.prepared) != prepared.prepared) ground_ = nullptr;
+    if (std::exchange(basis_of_, prepared.prepared) != prepared.prepared) basis_ = nullptr;
     picture_ = std::make_unique<ProgressivePicture>(
         std::move(prepared), PictureWishes{},
-        [this]() -> const Workers& { return home_.workers(state_.threads); }, ground_,
+        [this]() -> const Workers& { return home_.workers(state_.threads); }, basis_,
         is_same_text ? seconds_a_sample_ : 0);
 }
 
@@ -244,10 +278,11 @@ void StudioSession::step_thumbnail(const std::function<bool()>& cut_short) {
         if (outdated()) return;
         if (!is_drawn) return end_thumbnail("this model has errors");
         constexpr int samples = 4;
-        constexpr double work_seconds = 1;
+        const double work_seconds =
+            prepared.prepared->work_seconds + thumbnail_seconds(prepared.viewed->view.size);
         thumbnail.picture = std::make_unique<ProgressivePicture>(
             std::move(prepared), PictureWishes{.samples = samples, .work_seconds = work_seconds},
-            [this]() -> const Workers& { return home_.workers(0); });
+            [this]() -> const Workers& { return home_.workers(0); }, nullptr, 0, PicturePasses::last);
         return;
     }
     PictureListener listener;
@@ -324,6 +359,7 @@ void StudioSession::tell_of_engine() {
               {"seconds_left", nullptr},
               {"noise_255", nullptr},
               {"error_px", nullptr},
+              {"whole_seconds", nullptr},
               {"done", !news.picture}});
     }
 }
@@ -334,14 +370,7 @@ void StudioSession::draw(const std::function<bool()>& cut_short) {
     listener.on_tile = [this](const ShownTile& shown) { send_tile(shown); };
     listener.on_pass = [this](const ShownPass& shown) {
         if (outdated()) return;
-        send({{"type", "pass"},
-              {"number", state_.number},
-              {"pass", shown.pass},
-              {"samples", shown.samples},
-              {"seconds_left", shown.seconds_left ? nlohmann::json(*shown.seconds_left) : nlohmann::json()},
-              {"noise_255", shown.noise_255 ? nlohmann::json(*shown.noise_255) : nlohmann::json()},
-              {"error_px", shown.error_px},
-              {"done", shown.done}});
+        send(pass_message(state_.number, shown));
     };
     const auto cancelled = [&] {
         if (outdated() || waiting_) return true;
@@ -352,7 +381,7 @@ void StudioSession::draw(const std::function<bool()>& cut_short) {
             cancelled, [this] { return outdated(); }, listener))
         stage_ = Stage::nothing;
     wait_longer(!outdated() && !waiting_ && cut_short());
-    ground_ = picture_->ground();
+    basis_ = picture_->basis();
     seconds_a_sample_ = picture_->rough_seconds_a_sample();
     if (picture_->passes() > 0 && passes == 0 && !outdated()) describe();
 }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "compiler/support/files.h"
 #include "runtime/studio/film_framing.h"
 #include "runtime/studio/picture/progressive_picture.h"
 #include "runtime/studio/pointer.h"
@@ -27,9 +29,10 @@ namespace graftal {
 class StudioSession {
     /// The stages of one model, and the text that they know.
     struct ModelSession {
-        std::unique_ptr<Session> session;
-        std::string name;
-        std::optional<std::string> text;
+        const Files& files;
+        std::unique_ptr<Session> session = nullptr;
+        std::string name = {};
+        std::optional<std::string> text = {};
     };
 
   public:
@@ -49,6 +52,10 @@ class StudioSession {
     /// Works for about so many seconds; the last piece of work may take as long again. False when there is
     /// nothing to do until the next message.
     bool work(double budget_seconds);
+
+    /// Has work() compile and draw the last state anew where a file that its model names was written, came or
+    /// went since. Called by the thread that works.
+    void look_at_files();
 
     /// Ends all work soon, and for good.
     void stop() { stopped_ = true; }
@@ -110,6 +117,7 @@ class StudioSession {
     void step_thumbnail(const std::function<bool()>& cut_short);
     void end_thumbnail(const std::string& error);
     bool prepare(ModelSession& model, StudioState& state, PreparedView& prepared, Compilation& compilation);
+    bool reload_files();
     void compile();
     void describe();
     void draw(const std::function<bool()>& cut_short);
@@ -138,16 +146,18 @@ class StudioSession {
     std::atomic<bool> file_stopped_ = false; ///< nobody wants the file any more
 
     Stage stage_ = Stage::nothing;
-    StudioState state_; ///< with its text
-    ModelSession model_;
-    ModelSession thumbnail_model_;
+    StudioState state_;                     ///< with its text
+    std::map<std::string, FileStamp> used_; ///< files that the model names, there or not, when it was read
+    const HeardFiles files_;                ///< that note them
+    ModelSession model_{files_};
+    ModelSession thumbnail_model_{home_.files()};
     std::deque<Thumbnail> thumbnails_;
     Compilation compilation_; ///< of the state
     std::unique_ptr<ProgressivePicture> picture_;
     Pointer pointer_;
     FilmFraming film_framing_;
-    std::shared_ptr<TraceGround> ground_; ///< of the last picture
-    std::shared_ptr<const PreparedCut> ground_of_;
+    std::shared_ptr<TraceBasis> basis_; ///< of the last picture
+    std::shared_ptr<const PreparedGraph> basis_of_;
     bool described_ = false;      ///< the state's model was told
     int engine_pass_ = 0;         ///< of the engine that draws beside this
     double seconds_a_sample_ = 0; ///< of the last picture of this text

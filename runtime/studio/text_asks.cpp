@@ -14,6 +14,7 @@
 #include "compiler/editing/maps/maps.h"
 #include "compiler/editing/positions.h"
 #include "compiler/editing/rename.h"
+#include "compiler/editing/setting.h"
 #include "compiler/editing/vary.h"
 #include "runtime/studio/message_reader.h"
 #include "runtime/studio/model_message.h"
@@ -43,6 +44,7 @@ class TextAsk {
         if (what == "pull") return pulled();
         if (what == "drag") return part_dragged();
         if (what == "digraph") return toggled();
+        if (what == "setting") return set();
         return varied();
     }
 
@@ -159,6 +161,17 @@ class TextAsk {
                                     asked_.context));
     }
 
+    Json set() const {
+        constexpr std::uint64_t most = std::uint64_t{1} << 53u;
+        const std::string name = fields_.needed_text("name");
+        if (name != "steps" && name != "seed") throw BadMessage("'name' is neither steps nor seed");
+        const SettingChange change =
+            write_setting(document_, name == "steps" ? ModelSetting::steps : ModelSetting::seed,
+                          fields_.needed_whole("value", most));
+        if (!change.refusal.empty()) throw BadMessage(change.refusal);
+        return {{"edits", edits_json(change.edits)}, {"why", change.remark}};
+    }
+
     VariationKind kind() const {
         const std::string name = fields_.needed_text("kind");
         if (name == "seed") return VariationKind::seed;
@@ -209,8 +222,8 @@ Json matrix_json(const Affine& map) {
 } // namespace
 
 bool is_about_text(const std::string& what) {
-    constexpr std::string_view known[] = {"complete", "hover", "definition", "rename",  "format",
-                                          "map",      "pull",  "drag",       "digraph", "vary"};
+    constexpr std::string_view known[] = {"complete", "hover", "definition", "rename", "format", "map",
+                                          "pull",     "drag",  "digraph",    "vary",   "setting"};
     return std::ranges::find(known, what) != std::end(known);
 }
 

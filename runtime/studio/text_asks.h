@@ -11,7 +11,8 @@
 
 namespace graftal {
 
-/// Whether an ask of this name is about the text alone: completion, hovering, names, layout, maps, variation.
+/// Whether an ask of this name is about the text alone: completion, hovering, names, layout, maps, settings,
+/// variation.
 bool is_about_text(const std::string& what);
 
 /// The text that asks are about, and what is known of its model.

@@ -13,7 +13,7 @@ constexpr std::string_view ground_name = "(ground)";
 
 } // namespace
 
-AovSample::AovSample(const SurfaceHit& hit, const Ray& ray, const View& view, const CutGraph* named) {
+AovSample::AovSample(const SurfaceHit& hit, const Ray& ray, const View& view, const DetailGraph* named) {
     if (!hit.material) return;
     depth = glm::dot(ray(hit.t) - view.camera.location, view.camera.direction);
     normal = glm::dot(hit.normal, ray.direction) > 0 ? -hit.normal : hit.normal;
@@ -54,7 +54,7 @@ AovPixel AovSum::pixel() const {
     return pixel;
 }
 
-std::string_view object_name(const CutGraph& cut, std::uint32_t node) {
+std::string_view object_name(const DetailGraph& cut, std::uint32_t node) {
     return node < cut.nodes.size() ? std::string_view(cut.nodes[node].name) : ground_name;
 }
 
@@ -62,9 +62,9 @@ std::string_view material_name(const Material& material) {
     return material.name.empty() ? "(plain)" : std::string_view(material.name);
 }
 
-ObjectNumbers::ObjectNumbers(const CutGraph& cut) {
+ObjectNumbers::ObjectNumbers(const DetailGraph& cut) {
     std::unordered_map<std::string_view, std::uint32_t> known;
-    for (const CutNode& node : cut.nodes) {
+    for (const DetailNode& node : cut.nodes) {
         const auto [place, added] = known.emplace(node.name, static_cast<std::uint32_t>(names_.size() + 1));
         if (added) names_.push_back(node.name);
         number_of_node_.push_back(place->second);

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/ray.h"
 #include "runtime/trace/mattes.h"
@@ -50,7 +50,7 @@ struct AovSample {
     AovSample() = default;
     /// `hit` is of the ray, and has no material where nothing is met. What is no number is not met. `named`:
     /// null, or the graph whose names make the mattes.
-    AovSample(const SurfaceHit& hit, const Ray& ray, const View& view, const CutGraph* named = nullptr);
+    AovSample(const SurfaceHit& hit, const Ray& ray, const View& view, const DetailGraph* named = nullptr);
 };
 
 /// The samples of a pixel.
@@ -73,14 +73,14 @@ class AovSum {
 };
 
 /// Names of what mattes tell apart: of a node of the graph or of ground_node, and of a material.
-std::string_view object_name(const CutGraph& cut, std::uint32_t node);
+std::string_view object_name(const DetailGraph& cut, std::uint32_t node);
 std::string_view material_name(const Material& material);
 
 /// Numbers for the objects of a model, from 1 on in the order of its graph; 0 is nothing. Nodes that stand
 /// for one object, such as its halves, share its number. The last number is the ground's.
 class ObjectNumbers {
   public:
-    explicit ObjectNumbers(const CutGraph& cut);
+    explicit ObjectNumbers(const DetailGraph& cut);
 
     std::uint32_t of(std::uint32_t node) const;
     /// Names by number, from 1 on.

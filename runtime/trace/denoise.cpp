@@ -31,25 +31,25 @@ static_assert(tile_px % cell_px == 0 && halo_px % cell_px == 0); // tiles have c
 /// features do not differ says nothing about them.
 constexpr float ridge_share = 1e-3f, ridge = 1e-5f;
 
-/// Sums that average pixels without samples alone differ from 0 by rounding.
-constexpr float least_weight = 1e-3f;
+/// Light beyond which a pixel counts as one of this: squares of more are no numbers.
+constexpr float most_light = 1e12f;
 
 using Features = Eigen::Matrix<float, feature_count, 1>;
 using Slopes = Eigen::Matrix<float, feature_count, channels>;
-using Light = Eigen::Matrix<float, 1, channels>;
+using PixelLight = Eigen::Matrix<float, 1, channels>;
 using Square = Eigen::Matrix<float, feature_count, feature_count>;
 
 /// Light as a linear function of features.
 struct Fit {
     Slopes slopes;
-    Light level;
+    PixelLight level;
 };
 
 /// The sums that a fit needs, over the pixels of a window that have samples.
 struct Moments {
     float weight; ///< number of these pixels, a pixel of the window
     Features feature;
-    Light light;
+    PixelLight light;
     Square feature_feature;
     Slopes feature_light;
 };
@@ -86,20 +86,18 @@ template<class Value> class Field {
     static void average_line(Value* first, int step, int count, int radius, std::vector<Value>& line) {
         for (int i = 0; i < count; ++i)
             line[static_cast<std::size_t>(i)] = first[static_cast<std::ptrdiff_t>(i) * step];
-        std::array<float, floats> sum{};
-        const auto add = [&](int i, float sign) {
-            const auto one = floats_of(line[static_cast<std::size_t>(i)]);
-            for (std::size_t n = 0; n < floats; ++n)
-                sum[n] += sign * one[n];
-        };
-        for (int i = 0; i < std::min(radius, count); ++i)
-            add(i, 1);
+        // Each sum by itself: what is subtracted from a running one leaves the rounding of a bright pixel to
+        // all that come after it.
         for (int i = 0; i < count; ++i) {
-            if (i + radius < count) add(i + radius, 1);
-            if (i > radius) add(i - radius - 1, -1);
-            const int taken = std::min(count, i + radius + 1) - std::max(0, i - radius);
+            const int begin = std::max(0, i - radius), end = std::min(count, i + radius + 1);
+            std::array<float, floats> sum{};
+            for (int k = begin; k < end; ++k) {
+                const auto one = floats_of(line[static_cast<std::size_t>(k)]);
+                for (std::size_t n = 0; n < floats; ++n)
+                    sum[n] += one[n];
+            }
             const auto to = floats_of(first[static_cast<std::ptrdiff_t>(i) * step]);
-            const float share = 1.0f / static_cast<float>(taken);
+            const float share = 1.0f / static_cast<float>(end - begin);
             for (std::size_t n = 0; n < floats; ++n)
                 to[n] = share * sum[n];
         }
@@ -112,8 +110,8 @@ template<class Value> class Field {
 
 // Eigen's sums of products depend on the instruction set; these have one order on all machines.
 
-Light product(const Features& features, const Slopes& slopes) {
-    Light sum = features[0] * slopes.row(0);
+PixelLight product(const Features& features, const Slopes& slopes) {
+    PixelLight sum = features[0] * slopes.row(0);
     for (int k = 1; k < feature_count; ++k)
         sum += features[k] * slopes.row(k);
     return sum;
@@ -143,10 +141,10 @@ Slopes solved(Square a, Slopes b) {
 }
 
 Fit fit_of(const Moments& sum) {
-    if (!(sum.weight > least_weight)) return {Slopes::Zero(), Light::Zero()};
+    if (!(sum.weight > 0)) return {Slopes::Zero(), PixelLight::Zero()};
     const float share = 1 / sum.weight;
     const Features feature = share * sum.feature;
-    const Light light = share * sum.light;
+    const PixelLight light = share * sum.light;
     Square covariance = share * sum.feature_feature - feature * feature.transpose();
     covariance.diagonal() = (1 + ridge_share) * covariance.diagonal().cwiseMax(0) + Features::Constant(ridge);
     const Slopes slopes = solved(covariance, share * sum.feature_light - feature * light);
@@ -168,7 +166,7 @@ class TileDenoiser {
         const int x0 = std::max(0, left - halo_px), y0 = std::max(0, top - halo_px);
         const int w = std::min(width_, left + tile_px + halo_px) - x0;
         const int h = std::min(height_, top + tile_px + halo_px) - y0;
-        Field<Light> halves(w, h);
+        Field<PixelLight> halves(w, h);
         for (int y = 0; y < h; ++y)
             for (int x = 0; x < w; ++x)
                 halves.at(x, y) = halves_of(samples_[index(x0 + x, y0 + y)]);
@@ -210,14 +208,16 @@ class TileDenoiser {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
     }
 
-    /// Makes a feature that has no scale of its own 1 in the mean.
+    /// Makes a feature that has no scale of its own 1 in the mean; 0 where none is, or all are next to
+    /// nothing.
     float scale_of(std::size_t feature) const {
         double sum = 0, covered = 0;
         for (const PixelFeatures& one : features_) {
             covered += static_cast<double>(one[0]);
             sum += std::abs(static_cast<double>(one[feature]));
         }
-        return sum > 0 ? static_cast<float>(covered / sum) : 0;
+        const double scale = covered / sum;
+        return scale <= std::numeric_limits<float>::max() ? static_cast<float>(scale) : 0;
     }
 
     Features features_at(int x, int y) const {
@@ -226,16 +226,16 @@ class TileDenoiser {
 
     bool has_halves(int x, int y) const { return samples_[index(x, y)].count() >= 2; }
 
-    static Light halves_of(const NoiseMeter& meter) {
-        Light both;
+    static PixelLight halves_of(const NoiseMeter& meter) {
+        PixelLight both;
         for (int c = 0; c < 3; ++c) {
-            both[c] = static_cast<float>(meter.half(0)[c]);
-            both[3 + c] = static_cast<float>(meter.half(1)[c]);
+            both[c] = std::min(static_cast<float>(meter.half(0)[c]), most_light);
+            both[3 + c] = std::min(static_cast<float>(meter.half(1)[c]), most_light);
         }
         return both;
     }
 
-    Field<Range> ranges_of(int x0, int y0, Field<Light>& halves) const {
+    Field<Range> ranges_of(int x0, int y0, Field<PixelLight>& halves) const {
         const int w = halves.width(), h = halves.height();
         Field<Range> across(w, h), both(w, h);
         for (int y = 0; y < h; ++y)
@@ -253,7 +253,7 @@ class TileDenoiser {
         return both;
     }
 
-    Field<Moments> cells_of(int x0, int y0, Field<Light>& halves) const {
+    Field<Moments> cells_of(int x0, int y0, Field<PixelLight>& halves) const {
         const int w = halves.width(), h = halves.height();
         Field<Moments> cells((w + cell_px - 1) / cell_px, (h + cell_px - 1) / cell_px);
         for (int cell_y = 0; cell_y < cells.height(); ++cell_y)
@@ -262,13 +262,13 @@ class TileDenoiser {
                 const int right = std::min(left + cell_px, w), below = std::min(top + cell_px, h);
                 const float share = 1.0f / static_cast<float>((right - left) * (below - top));
                 Moments& sum = cells.at(cell_x, cell_y);
-                sum = {0, Features::Zero(), Light::Zero(), Square::Zero(), Slopes::Zero()};
+                sum = {0, Features::Zero(), PixelLight::Zero(), Square::Zero(), Slopes::Zero()};
                 for (int y = top; y < below; ++y)
                     for (int x = left; x < right; ++x) {
                         if (!has_halves(x0 + x, y0 + y)) continue;
                         sum.weight += share;
                         const Features f = features_at(x0 + x, y0 + y), weighted = share * f;
-                        const Light& light = halves.at(x, y);
+                        const PixelLight& light = halves.at(x, y);
                         sum.feature += weighted;
                         sum.light += share * light;
                         sum.feature_feature += weighted * f.transpose();
@@ -278,7 +278,8 @@ class TileDenoiser {
         return cells;
     }
 
-    Estimate estimate(int x0, int y0, const Field<Moments>& cells, Field<Light>& halves, int radius) const {
+    Estimate estimate(int x0, int y0, const Field<Moments>& cells, Field<PixelLight>& halves,
+                      int radius) const {
         const int w = halves.width(), h = halves.height();
         Field<Moments> moments = cells;
         moments.average(radius);
@@ -290,7 +291,7 @@ class TileDenoiser {
         Estimate estimate{{w, h}, {w, h}};
         for (int y = 0; y < h; ++y)
             for (int x = 0; x < w; ++x) {
-                const Light light = light_at(x, y, fits, features_at(x0 + x, y0 + y));
+                const PixelLight light = light_at(x, y, fits, features_at(x0 + x, y0 + y));
                 estimate.light.at(x, y) = 0.5f * (light.head<3>() + light.tail<3>()).transpose();
                 estimate.errors.at(x, y) =
                     has_halves(x0 + x, y0 + y) ? errors_of(light, halves.at(x, y)) : Errors{0, 0, 0};
@@ -299,14 +300,14 @@ class TileDenoiser {
         for (int y = 0; y < h; ++y)
             for (int x = 0; x < w; ++x) {
                 Errors& errors = estimate.errors.at(x, y);
-                const float share = errors.weight > least_weight ? 1 / errors.weight : 0;
+                const float share = errors.weight > 0 ? 1 / errors.weight : 0;
                 errors = {1, share * errors.of_estimate, share * errors.of_mean};
             }
         return estimate;
     }
 
     /// The light that the fits around a pixel give its features.
-    static Light light_at(int x, int y, Field<Fit>& fits, const Features& features) {
+    static PixelLight light_at(int x, int y, Field<Fit>& fits, const Features& features) {
         const auto place = [](int pixel, int cells, int& cell, float& beyond) {
             const float at = (static_cast<float>(pixel) + 0.5f) / cell_px - 0.5f;
             cell = std::clamp(static_cast<int>(std::floor(at)), 0, std::max(cells - 2, 0));
@@ -316,17 +317,18 @@ class TileDenoiser {
         int left = 0, top = 0;
         float across = 0, down = 0;
         const int right = place(x, fits.width(), left, across), below = place(y, fits.height(), top, down);
-        const auto by = [&](int column, int row, float weight) -> Light {
+        const auto by = [&](int column, int row, float weight) -> PixelLight {
             const Fit& fit = fits.at(column, row);
             return weight * (fit.level + product(features, fit.slopes));
         };
-        const Light light = by(left, top, (1 - across) * (1 - down)) + by(right, top, across * (1 - down)) +
-                            by(left, below, (1 - across) * down) + by(right, below, across * down);
+        const PixelLight light = by(left, top, (1 - across) * (1 - down)) +
+                                 by(right, top, across * (1 - down)) + by(left, below, (1 - across) * down) +
+                                 by(right, below, across * down);
         return light.cwiseMax(0);
     }
 
     /// Errors of one pixel, which tell something as means over many.
-    Errors errors_of(const Light& estimated, const Light& sampled) const {
+    Errors errors_of(const PixelLight& estimated, const PixelLight& sampled) const {
         Errors errors{1, 0, 0};
         for (int c = 0; c < 3; ++c) {
             const float slope = shown_slope(0.5f * (estimated[c] + estimated[3 + c]));
@@ -346,7 +348,7 @@ class TileDenoiser {
     }
 
     /// Mixes the best estimate and the mean so that the error of both is least, were they independent.
-    /// Without samples there is the estimate alone.
+    /// Without samples there is the estimate alone; where light is too bright for sums, the mean.
     void choose(std::size_t pixel, int x, int y, std::vector<Estimate>& estimates, const Range& range,
                 Denoised& result) const {
         const NoiseMeter& meter = samples_[pixel];
@@ -358,11 +360,14 @@ class TileDenoiser {
         const float error = std::max(errors.of_estimate, 0.02f * mean_error);
         float share = mean_error > 0 && meter.count() >= 2 ? mean_error / (mean_error + error) : 0;
         if (meter.count() == 0) share = 1;
-        result.errors_255[pixel] = std::sqrt(share * share * error + (1 - share) * (1 - share) * mean_error);
+        const float left = std::sqrt(share * share * error + (1 - share) * (1 - share) * mean_error);
+        result.errors_255[pixel] = std::isfinite(left) ? left : 255;
         const Eigen::Array3f light = range.nearest(best->light.at(x, y).array());
         for (int c = 0; c < 3; ++c) {
             const auto mean = static_cast<float>(meter.mean()[c]);
-            result.picture.pixels[3 * pixel + static_cast<std::size_t>(c)] = mean + share * (light[c] - mean);
+            const float mixed = mean + share * (light[c] - mean);
+            result.picture.pixels[3 * pixel + static_cast<std::size_t>(c)] =
+                std::isfinite(mixed) ? mixed : mean;
         }
     }
 

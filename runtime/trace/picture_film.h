@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/scene/scene.h"
 #include "compiler/support/status.h"
 #include "runtime/image/image.h"
@@ -13,8 +13,8 @@ namespace graftal {
 struct PictureShape {
     Tile window; ///< the part of the whole picture that is drawn
     int channels = 3;
-    const View& view;    ///< whose film makes samples for people of its light
-    const CutGraph& cut; ///< whose nodes AOVs name
+    const View& view;       ///< whose film makes samples for people of its light
+    const DetailGraph& cut; ///< whose nodes AOVs name
 };
 
 /// The door by which a picture leaves the tracer: a file, the memory of a caller, a socket, the loss of a fit

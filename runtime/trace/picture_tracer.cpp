@@ -383,7 +383,7 @@ class Worker {
     Shader shader_;
     const Film& film_;
     const View& view_;
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     const TraceControl& control_;
     Shader::Ahead ahead_;
     std::vector<SampleStream> randoms_; ///< of the sights ahead
@@ -391,9 +391,9 @@ class Worker {
     TraceStatistics noise_; ///< the fields of noise
     std::vector<Rgb> row_, sums_;
     Tile window_;
-    AovPicture* aovs_ = nullptr;      ///< null: none are wanted
-    const CutGraph* named_ = nullptr; ///< null: no mattes are
-    AovSample seen_;                  ///< by the last look, if they are
+    AovPicture* aovs_ = nullptr;         ///< null: none are wanted
+    const DetailGraph* named_ = nullptr; ///< null: no mattes are
+    AovSample seen_;                     ///< by the last look, if they are
     std::vector<AovSum> aov_sums_;
 };
 

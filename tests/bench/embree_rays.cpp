@@ -18,7 +18,7 @@ struct EmbreeScene::Flat {
 /// Follows a model's pieces.
 struct EmbreeScene::Builder {
     const TraceModel& model;
-    const CutGraph& cut = model.prepared.cut;
+    const DetailGraph& cut = model.prepared.cut;
     using Kind = std::pair<NodeId, std::uint32_t>; ///< a node and its levels left
     std::map<Kind, double> counts = {};
 
@@ -36,24 +36,24 @@ struct EmbreeScene::Builder {
 
     /// Triangles of a piece.
     double count(const Piece& piece) {
-        const CutNode& node = cut.nodes[piece.node];
+        const DetailNode& node = cut.nodes[piece.node];
         if (node.primitive) return static_cast<double>(tessellated(*node.primitive, 0).triangles.size());
         const auto [known, added] = counts.emplace(Kind{piece.node, piece.steps}, 0);
         if (!added) return known->second;
         double sum = 0;
         const bool is_cut = this->is_cut(piece);
-        for (const CutEdge& edge : followed_edges(node, is_cut))
+        for (const DetailEdge& edge : followed_edges(node, is_cut))
             sum += count(descend(cut, piece, edge, is_cut));
         return counts[{piece.node, piece.steps}] = sum;
     }
 
     void flatten(const Piece& piece, Flat& flat) const {
-        const CutNode& node = cut.nodes[piece.node];
+        const DetailNode& node = cut.nodes[piece.node];
         if (node.primitive) return add(*node.primitive, piece.world_from_node, flat);
         const bool is_cut = this->is_cut(piece);
         if (followed_edges(node, is_cut).empty())
             return add(PrimitiveKind::sphere, piece.world_from_node * node.node_from_proxy, flat);
-        for (const CutEdge& edge : followed_edges(node, is_cut))
+        for (const DetailEdge& edge : followed_edges(node, is_cut))
             flatten(descend(cut, piece, edge, is_cut), flat);
     }
 
@@ -146,7 +146,7 @@ EmbreeScene::EmbreeScene(const TraceModel& model, Form form) {
         const bool is_cut = builder.is_cut(piece);
         const auto edges = followed_edges(builder.cut.nodes[piece.node], is_cut);
         if (!edges.empty() && builder.count(piece) > most) {
-            for (const CutEdge& edge : edges)
+            for (const DetailEdge& edge : edges)
                 stack.push_back(descend(builder.cut, piece, edge, is_cut));
             continue;
         }

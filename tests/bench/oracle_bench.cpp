@@ -43,8 +43,8 @@ Vec3 some_point(const DetailedModel& ours, Vec3 otherwise) {
     const AnalysedModel& analysed = *ours.viewed->model;
     const View& view = ours.viewed->view;
     const TraceModel model(
-        std::make_shared<const PreparedCut>(
-            prepare_cut(analysed.graph, analysed.components, analysed.bounds, ours.detail.preparing())),
+        std::make_shared<const PreparedGraph>(
+            prepare_graph(analysed.graph, analysed.components, analysed.bounds, ours.detail.preparing())),
         view, ours.detail);
     Traversal traversal(model);
     const CameraRays rays(view);

@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Vec3 centre = box.empty() ? Vec3(0.0) : box.centre();
     view.camera.location = centre + Vec3(0, 0, 2 * reach);
     const TraceModel model(
-        std::make_shared<const PreparedCut>(prepare_cut(graph, components, bounds, options.preparing())),
+        std::make_shared<const PreparedGraph>(prepare_graph(graph, components, bounds, options.preparing())),
         view, options);
     Traversal traversal(model), portable(model, Instructions::portable);
     for (int i = 0; i < 16; ++i) {

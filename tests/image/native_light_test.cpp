@@ -374,7 +374,7 @@ NativePicture shade(const CompiledModel& model, const std::vector<PixelSample>& 
     return picture;
 }
 
-struct Agreement {
+struct LightAgreement {
     double max = 0;
     double mean = 0;
     int off = 0;        ///< pixels farther apart than the last bits
@@ -382,8 +382,8 @@ struct Agreement {
     int hits = 0;
 };
 
-Agreement compare(const NativePicture& native, const Image& povray, double roundings = 1) {
-    Agreement agreement;
+LightAgreement compare(const NativePicture& native, const Image& povray, double roundings = 1) {
+    LightAgreement agreement;
     const auto channels = static_cast<std::size_t>(povray.channels);
     for (std::size_t i = 0; i < native.pixels.size(); ++i) {
         double farthest = 0, from_magenta = 0;
@@ -414,7 +414,7 @@ TEST_P(NativeLight, IsPovrays) {
     const NativePicture native = shade(*model, {povray_sample_of_pixel});
     const Image povray = draw(*model, SampleFormat::linear16);
     ASSERT_EQ(povray.pixels.size(), native.pixels.size() * static_cast<std::size_t>(povray.channels));
-    const Agreement agreement = compare(native, povray, scene.roundings);
+    const LightAgreement agreement = compare(native, povray, scene.roundings);
     RecordProperty("max_of_65535", std::to_string(65535 * agreement.max));
     RecordProperty("mean_of_255", std::to_string(255 * agreement.mean));
     EXPECT_GT(agreement.hits, scene.size.width * scene.size.height / 40);
@@ -460,7 +460,7 @@ TEST(NativeLightPicture, OfTheSkyIsPovrays) {
         const NativePicture native = shade(*model, {povray_sample_of_pixel});
         const Image povray = draw(*model, SampleFormat::linear16);
         ASSERT_EQ(povray.pixels.size(), native.pixels.size() * static_cast<std::size_t>(povray.channels));
-        const Agreement agreement = compare(native, povray);
+        const LightAgreement agreement = compare(native, povray);
         EXPECT_GT(agreement.hits, size.width * size.height / 40);
         EXPECT_LT(agreement.hits, size.width * size.height);
         EXPECT_EQ(agreement.off, 0) << "by up to " << 65535 * agreement.max << "/65535";
@@ -477,7 +477,7 @@ TEST(NativeLightSamples, ArePovraysOfAnAntialiasedPixel) {
     for (const int depth : {1, 2, 3}) {
         SCOPED_TRACE(depth);
         const NativePicture native = shade(*model, povray_samples_of_pixel(depth));
-        const Agreement agreement = compare(native, draw(*model, SampleFormat::linear16, depth));
+        const LightAgreement agreement = compare(native, draw(*model, SampleFormat::linear16, depth));
         EXPECT_EQ(agreement.off, 0) << "by up to " << 65535 * agreement.max << "/65535";
     }
 }

@@ -34,10 +34,10 @@ struct Seen {
     Rgb lit{0.0};
 };
 
-std::shared_ptr<const PreparedCut> prepared_of(const DetailedModel& ours) {
+std::shared_ptr<const PreparedGraph> prepared_of(const DetailedModel& ours) {
     const AnalysedModel& model = *ours.viewed->model;
-    return std::make_shared<const PreparedCut>(
-        prepare_cut(model.graph, model.components, model.bounds, ours.detail.preparing()));
+    return std::make_shared<const PreparedGraph>(
+        prepare_graph(model.graph, model.components, model.bounds, ours.detail.preparing()));
 }
 
 /// The native engine, asked about single places.

@@ -19,14 +19,14 @@
 namespace graftal {
 namespace {
 
-constexpr ImageSize size{96, 64};
+constexpr ImageSize picture_size{96, 64};
 constexpr int across = 4, down = 2;
 using Packet = std::array<Ray, Surfaces::most_together>;
 using Hits = std::array<SurfaceHit, Surfaces::most_together>;
 
 std::unique_ptr<TraceModel> load(const std::string& path) {
     StageOptions options;
-    options.view.size = size;
+    options.view.size = picture_size;
     options.detail.error_px = 1;
     Compilation compilation;
     Session session(std::string(GRAFTAL_SOURCE_DIR "/") + path, disk_files());
@@ -68,8 +68,8 @@ TEST(Packets, MeetWhatTheirRaysMeetAloneInScenes) {
         EXPECT_TRUE(together.takes_packets());
         const CameraRays camera(model->view);
         int hits = 0;
-        for (int y = 0; y < size.height; y += down)
-            for (int x = 0; x < size.width; x += across) {
+        for (int y = 0; y < picture_size.height; y += down)
+            for (int x = 0; x < picture_size.width; x += across) {
                 Packet rays;
                 for (std::size_t i = 0; i < rays.size(); ++i)
                     rays[i] = camera.through(x + static_cast<double>(i % across) + 0.5,

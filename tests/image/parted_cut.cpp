@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/detail/graph/build_cut_graph.h"
+#include "compiler/detail/graph/build_detail_graph.h"
 #include "compiler/detail/shadow/coverage.h"
 #include "compiler/detail/shell/store.h"
 #include "compiler/passes/pipeline.h"
@@ -12,7 +12,7 @@ namespace graftal {
 
 CompiledModel parted_at(const CompiledModel& model, double mesh_triangles) {
     BoundedGraph passed = run_passes(detail_passes(), {model.model->graph, model.model->bounds});
-    CutGraph cut = build_cut_graph(std::move(passed.graph), passed.bounds);
+    DetailGraph cut = build_detail_graph(std::move(passed.graph), passed.bounds);
     const Symmetry symmetry = find_symmetry(cut);
     fit_proxies(cut, symmetry);
     const DetailOptions options;

@@ -125,7 +125,7 @@ std::string sdl_of(const CompiledModel& model) {
     return text;
 }
 
-std::vector<float> picture_of(const ViewedModel& viewed, std::shared_ptr<const PreparedCut> prepared,
+std::vector<float> picture_of(const ViewedModel& viewed, std::shared_ptr<const PreparedGraph> prepared,
                               const DetailOptions& detail) {
     const TraceModel model(std::move(prepared), viewed.view, resolved(detail, viewed));
     Image picture{viewed.view.size.width, viewed.view.size.height, 3, {}};

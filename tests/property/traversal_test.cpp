@@ -31,7 +31,7 @@ struct Leaf {
 
 /// All that is drawn, unfolded; nothing if that is too much, or flat or tiny, for the plain way.
 std::optional<std::vector<Leaf>> plain_unfolding(const TraceModel& model, std::size_t most) {
-    const CutGraph& cut = model.prepared.cut;
+    const DetailGraph& cut = model.prepared.cut;
     std::vector<Leaf> leaves;
     Piece root;
     root.node = cut.root;
@@ -40,7 +40,7 @@ std::optional<std::vector<Leaf>> plain_unfolding(const TraceModel& model, std::s
     while (!stack.empty()) {
         const Piece piece = stack.back();
         stack.pop_back();
-        const CutNode& node = cut.nodes[piece.node];
+        const DetailNode& node = cut.nodes[piece.node];
         if (node.sealed || leaves.size() + stack.size() > most) return std::nullopt;
         const bool is_cut = graftal::is_cut(node, piece.steps, detail_of(cut, model.projection, piece),
                                             model.projection.error_px());
@@ -56,8 +56,9 @@ std::optional<std::vector<Leaf>> plain_unfolding(const TraceModel& model, std::s
                      colour_of_proxy(node).over(piece.inherited)))
                 return std::nullopt;
         } else {
-            for_each_edge(node, is_cut,
-                          [&](const CutEdge& edge) { stack.push_back(descend(cut, piece, edge, is_cut)); });
+            for_each_edge(node, is_cut, [&](const DetailEdge& edge) {
+                stack.push_back(descend(cut, piece, edge, is_cut));
+            });
         }
     }
     return leaves;
@@ -213,9 +214,9 @@ TEST(TraversalProperty, MeetsWhatThePlainUnfoldingMeets) {
         DetailOptions options;
         options.error_px = seed % 3 == 0 ? 2 : 0;
         if (options.error_px == 0 || seed % 2 == 0) options.steps = static_cast<unsigned>(seed % 4);
-        const TraceModel model(
-            std::make_shared<const PreparedCut>(prepare_cut(graph, components, bounds, options.preparing())),
-            view_of(graph, bounds), options);
+        const TraceModel model(std::make_shared<const PreparedGraph>(
+                                   prepare_graph(graph, components, bounds, options.preparing())),
+                               view_of(graph, bounds), options);
         const auto leaves = plain_unfolding(model, 400);
         if (!leaves || leaves->empty()) continue;
         std::mt19937_64 random(seed);

@@ -21,7 +21,9 @@ rifs fern {
 }
 `;
 
-/** Serves `folder` and the session; gives its address and what the page told. With `told.delay_ms`, states are answered so late. */
+/** Serves `folder` and the session; gives its address and what the page told. With `told.delay_ms`, states are answered so late; with
+ * `told.passes` 1, their pictures stay rough; with `told.silent`, nothing is varied, and else so many as `told.children`; with
+ * `told.slow`, `told.film` says when a film is done. */
 export async function serve(folder, modules, { name = 'fern.rifs', text = example } = {}) {
   const { WebSocketServer } = createRequire(path.join(modules, 'x'))('ws');
   const server = http.createServer((request, response) => {
@@ -67,7 +69,7 @@ class MockSession {
   }
 
   answer_state(state) {
-    const { number } = state, findings = findings_of(state.text);
+    const { number } = state, findings = findings_of(state);
     this.send({ type: 'findings', number, findings });
     if (findings.some(({ severity }) => severity === 'error')) return;
     const model = model_of(state);
@@ -78,6 +80,7 @@ class MockSession {
       const picture = plot(model, state);
       this.tiles(number, 0, state, picture, 4);
       this.send({ type: 'pass', number, pass: 0, samples: 0.0625, seconds_left: 1, noise_255: 9, done: false });
+      if (this.told.passes === 1) return;
       this.tiles(number, 1, state, picture, 1);
       this.send({ type: 'pass', number, pass: 1, samples: 4, seconds_left: 0, noise_255: 1, done: true });
     });
@@ -145,11 +148,18 @@ class MockSession {
         const row = matrix.map((value) => String(Number(value.toFixed(4)))).join(', ');
         return answer({ edits: [{ from: map.from, to: map.to, text: `map ${map.name} { matrix ${row} }` }], ratio, contracts: true });
       }
+      case 'setting': {
+        const found = new RegExp(`^( *${fields.name}:? +)(\\S+)`, 'm').exec(state.text);
+        if (found) return answer({ edits: [{ from: found.index + found[1].length, to: found.index + found[0].length, text: String(fields.value) }] });
+        if (fields.name === 'seed') return answer({ error: 'This text has no place for a seed.' });
+        return answer({ edits: [{ from: state.text.length, to: state.text.length, text: `steps: ${fields.value}\n` }] });
+      }
       case 'digraph':
         return answer({ edits: [{ from: state.text.lastIndexOf('}'), to: state.text.lastIndexOf('}'), text: `  follow ${fields.from} -> ${fields.to}\n` }] });
       case 'vary':
+        if (this.told.silent) return undefined;
         return answer({
-          children: Array.from({ length: fields.count }, (_, i) => (fields.kind === 'seed'
+          children: Array.from({ length: this.told.children ?? fields.count }, (_, i) => (fields.kind === 'seed'
             ? { seed: 10 * fields.seed + i, says: `seed ${10 * fields.seed + i}` }
             : { set: { lean: 2.5 + (i - 3.5) * 4 * fields.spread * fields.seed }, says: `lean ${(2.5 + (i - 3.5) * 4 * fields.spread * fields.seed).toFixed(2)}` })),
         });
@@ -157,7 +167,10 @@ class MockSession {
         this.tiles(id, 0, fields, plot(model_of(fields), fields), 1);
         return answer({});
       case 'write': {
-        if (fields.film) return answer({ path: `film${fields.suffix}` });
+        if (fields.film) {
+          this.told.film = { progress: (share) => this.send({ type: 'progress', number: id, stage: 'write', share }), done: () => answer({ path: `film${fields.suffix}` }) };
+          return this.told.slow ? undefined : this.told.film.done();
+        }
         if (fields.path) return answer({ path: fields.path });
         const name = state.name.replace(/\.\w+$/, fields.suffix), contents = Buffer.from(`${fields.width}x${fields.height}`);
         this.send(binary([0x4c494647, id, Buffer.byteLength(name), 0, 0, 0, 0, 0], Buffer.concat([Buffer.from(name), contents])));
@@ -177,10 +190,10 @@ function binary(words, bytes) {
   return Buffer.concat([head, zlib.deflateSync(bytes, { level: 1 })]);
 }
 
-function findings_of(text) {
+function findings_of({ name, text }) {
   const found = /\boops\w*/.exec(text);
   return found ? [{
-    severity: 'error', file: '', from: found.index, to: found.index + found[0].length, text: `graftal does not know the word ${found[0]}`,
+    severity: 'error', file: name, from: found.index, to: found.index + found[0].length, text: `graftal does not know the word ${found[0]}`,
     hint: 'words that may stand here: map, let, terminal',
   }] : [];
 }
@@ -229,7 +242,7 @@ function model_of(state) {
   return {
     parameters, box: box_of(state),
     camera: state.camera ?? (is_solid(state) ? { location: [2.4, 1.8, 4], look_at: [0, 0, 0], up: [0, 1, 0], angle_deg: 45 }
-      : { location: [0.1, 5, 17], look_at: [0.1, 5, 0], up: [0, 1, 0], angle_deg: 60 }), stats: { steps: 12, seed: 1 }, maps: maps_of(state), digraphs: digraphs_of(state),
+      : { location: [0.1, 5, 17], look_at: [0.1, 5, 0], up: [0, 1, 0], angle_deg: 60 }), stats: { steps: 12 }, chance: !state.text.includes('no chance'), grows: !state.text.includes('no growth'), maps: maps_of(state), digraphs: digraphs_of(state),
   };
 }
 

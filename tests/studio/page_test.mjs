@@ -32,6 +32,22 @@ test('an error is underlined, and its mending changes the picture', async (hand,
   assert.match(hand.last().text, /curl = 0\.859/);
 });
 
+const twig = `lsys twig {
+  axiom A
+  A -> F(1)[+(40)F(1)]F(0.5) # a stem
+}
+# map a { scale 0.5  translate <0, 0.5> }
+# map b { scale 0.5 }
+`;
+
+const solid = `rifs solid {
+  map a { scale 0.5  translate <-0.5, -0.5, -0.5> }
+  map b { scale 0.5  translate <0.5, -0.5, -0.5> }
+  map c { scale 0.5  translate <-0.5, 0.5, -0.5> }
+  map d { scale 0.5  translate <0.5, 0.5, 0.5> }
+}
+`;
+
 const leans = (text) => /let lean = (\S+)/.exec(text)[1];
 const blank = (page) => page.evaluate(() => {
   const canvas = document.getElementById('picture');
@@ -168,6 +184,54 @@ test('a slider: coarse, fine, typed, reset, written', async (hand, page) => {
   assert.deepEqual(hand.last().set, {});
 });
 
+test('the text is saved with its knobs, or the page says what it has not', async (hand, page) => {
+  await hand.knob('lean').press('PageUp');
+  await hand.knob('Steps').press('ArrowRight');
+  await page.click('#tab-out');
+  assert.match(await page.textContent('#unwritten'), /^The text does not have: lean \d(\.\d+)?, steps 13\./);
+  await page.keyboard.press('Control+s');
+  await page.waitForSelector('#said button');
+  assert.match(await page.textContent('#said'), /^Saved fern\.rifs, without lean \d(\.\d+)?, steps 13: the text does not have that\./);
+  const { lean } = hand.last().set;
+  await page.click('#said button');
+  await hand.until(() => hand.asked('write').length === 2, 'it is saved again');
+  await hand.until(async () => (await page.textContent('#said')) === 'Saved fern.rifs.', 'all is in the text');
+  assert.equal(leans(hand.last().text), String(lean));
+  assert.match(hand.last().text, /\nsteps: 13\n$/);
+  assert.deepEqual([hand.last().set, hand.last().steps], [{}, null]);
+  await hand.until(async () => !(await page.isVisible('#unwritten')), 'nothing is left to write');
+  await page.keyboard.press('Control+z');
+  await hand.until(() => hand.last().steps === 13 && 'lean' in hand.last().set, 'it was one step');
+});
+
+test('a seed is typed, thrown and written; a text without a place for it says so', async (hand, page) => {
+  const seed = page.locator('[aria-label="Seed"]'), write = '[aria-label="Write seed into the text"]';
+  await seed.fill('718492');
+  await seed.press('Enter');
+  await hand.until(() => hand.last().seed === 718492, 'it is typed');
+  await page.click('[aria-label="Throw another seed"]');
+  await hand.until(() => hand.last().seed !== 718492, 'it is thrown');
+  assert.equal(await seed.inputValue(), String(hand.last().seed));
+  await seed.fill('1.5');
+  await seed.press('Enter');
+  assert.equal(await seed.inputValue(), String(hand.last().seed), 'a seed is a whole number');
+  await page.click(write);
+  await hand.until(async () => (await page.textContent('#said')) === 'This text has no place for a seed.', 'it says so');
+  await page.evaluate((text) => window.studio.change({ text }), 'rifs fern {\n  seed 7\n  map a { scale 0.5 }\n}\n');
+  await hand.settled();
+  const thrown = hand.last().seed;
+  await page.click(write);
+  await hand.until(() => hand.last().seed === null, 'the text has it');
+  assert.match(hand.last().text, new RegExp(`\\n  seed ${thrown}\\n`));
+  assert.equal(await page.textContent('#said'), 'Written in line 2.');
+  await page.evaluate(() => window.studio.change({ text: `# no chance\n${window.studio.history.now.text}` }));
+  await hand.settled();
+  assert.deepEqual([await seed.isVisible(), await hand.knob('Steps').isVisible()], [false, true], 'a model without chance has no seed to choose');
+  await page.evaluate(() => window.studio.change({ text: `# no growth\n${window.studio.history.now.text}` }));
+  await hand.settled();
+  assert.equal(await page.isVisible('text=Growth and chance'), false);
+});
+
 test('numbers and colours in the text are dragged and picked', async (hand, page) => {
   const number = await hand.place_of_text('2.5');
   await hand.changes(() => hand.drag(number, 30, 0));
@@ -213,13 +277,28 @@ test('completion, hover, definition, rename, format', async (hand, page) => {
   await hand.until(async () => /map stem \{/.test(await hand.text()), 'the text is formatted');
 });
 
+test('a flat model is panned by a plain drag, and orbited with Shift', async (hand, page) => {
+  const [x, y] = await hand.place_of('#view');
+  const sight = () => hand.last().camera.look_at.map((v, i) => Math.round(100 * (v - hand.last().camera.location[i])));
+  await hand.changes(() => hand.drag([x, y], 60, 80));
+  assert.deepEqual(sight(), [0, 0, -1700]);
+  assert.ok(hand.last().camera.look_at[0] < -0.5 && hand.last().camera.look_at[1] > 5.5, 'the fern follows the hand');
+  assert.match(await page.textContent('#view-keys'), /^Arrow keys pan, with Shift they orbit\./);
+  await page.focus('#view');
+  await hand.changes(() => page.keyboard.press('ArrowDown'));
+  assert.deepEqual(sight(), [0, 0, -1700]);
+  await page.keyboard.press('Shift+ArrowLeft');
+  await hand.settled();
+  assert.ok(Math.abs(sight()[0]) > 100, `${sight()}`);
+});
+
 test('orbit, pan, dolly; by mouse and by keys; undo them all', async (hand, page) => {
   const before = await hand.pixels(), [x, y] = await hand.place_of('#view');
   await hand.changes(() => hand.drag([x, y], 80, 30));
   const orbited = hand.last().camera;
-  assert.notEqual(orbited.location[0], 0.1);
-  assert.deepEqual(orbited.look_at, [0.1, 5, 0]);
-  assert.ok(Math.abs(Math.hypot(orbited.location[0] - 0.1, orbited.location[1] - 5, orbited.location[2]) - 17) < 2e-3);
+  assert.notEqual(orbited.location[0], 2.4);
+  assert.deepEqual(orbited.look_at, [0, 0, 0]);
+  assert.ok(Math.abs(Math.hypot(...orbited.location) - 5) < 1e-3);
   for (const number of orbited.location) assert.ok(String(number).length <= 7, `${number} has more digits than one can see`);
   await hand.changes(() => hand.drag([x, y], 50, 0, { shift: true }));
   await page.focus('#view');
@@ -231,7 +310,7 @@ test('orbit, pan, dolly; by mouse and by keys; undo them all', async (hand, page
   assert.equal(hand.last().camera, null);
   assert.equal(await hand.pixels(), before);
   assert.ok(await page.isDisabled('#undo'));
-});
+}, { opened: { name: 'solid.rifs', text: solid } });
 
 test('the wheel zooms without an end, and back', async (hand, page) => {
   const before = await hand.pixels(), [x, y] = await hand.place_of('#view');
@@ -241,6 +320,11 @@ test('the wheel zooms without an end, and back', async (hand, page) => {
   });
   await hand.until(() => Number(hand.last().zoom) > 1e18, 'the zoom is deep');
   assert.match(await page.textContent('#place'), /whole.*frond.*frond.*× /);
+  await page.click('#place .edit');
+  await page.fill('#place [name=at]', '(frond.left)*2.frond*13');
+  await page.keyboard.press('Enter');
+  await hand.settled();
+  assert.deepEqual(await page.locator('#place .crumb:not(.edit)').allTextContents(), ['whole', '(frond.left)*2', 'frond*13']);
   await page.click('#place .edit');
   await page.fill('#place [name=at]', 'left');
   await page.fill('#place [name=zoom]', '1e30');
@@ -327,21 +411,6 @@ test('a click on a box selects its map, a second one the part; handles stay in r
   }
 });
 
-const twig = `lsys twig {
-  axiom A
-  A -> F(1)[+(40)F(1)]F(0.5) # a stem
-}
-# map a { scale 0.5  translate <0, 0.5> }
-# map b { scale 0.5 }
-`;
-
-const solid = `rifs solid {
-  map a { scale 0.5  translate <-0.5, -0.5, -0.5> }
-  map b { scale 0.5  translate <0.5, -0.5, -0.5> }
-  map c { scale 0.5  translate <-0.5, 0.5, -0.5> }
-  map d { scale 0.5  translate <0.5, 0.5, 0.5> }
-}
-`;
 test('a box in space is moved, turned and sheared', async (hand, page) => {
   const matrix = (name) => new RegExp(`map ${name} { matrix ([^}]*)}`).exec(hand.last().text)[1].split(',').map(Number);
   await page.click('#tab-maps');
@@ -363,6 +432,78 @@ test('a box in space is moved, turned and sheared', async (hand, page) => {
   assert.ok(Math.hypot(...[1, 5, 9].map((i) => sheared[i] - turned[i])) > 0.01, `${turned} ${sheared}`);
 }, { opened: { name: 'solid.rifs', text: solid } });
 
+test('a map is turned about its foot, or about its middle; the stem stays on the box', async (hand, page) => {
+  const matrix = (name) => new RegExp(`map ${name} { matrix ([^}]*)}`).exec(hand.last().text)[1].split(',').map(Number);
+  const gap = () => page.evaluate(() => {
+    const [x, y] = document.querySelector('.stem').getAttribute('d').slice(1).split('L')[0].split(' ').map(Number);
+    const edges = [...document.querySelector('.map.chosen .edges').getAttribute('d').matchAll(/M(\S+) (\S+)L(\S+) (\S+?)(?=M|$)/g)];
+    const far = edges.map(([, ...numbers]) => {
+      const [ax, ay, bx, by] = numbers.map(Number), ex = bx - ax, ey = by - ay;
+      const share = Math.max(0, Math.min(1, ((x - ax) * ex + (y - ay) * ey) / (ex * ex + ey * ey || 1)));
+      return Math.hypot(ax + share * ex - x, ay + share * ey - y);
+    });
+    return Math.min(...far);
+  });
+  await page.click('#tab-maps');
+  await page.focus('[data-map=frond]');
+  assert.equal(await page.locator('circle.handle').count(), 1, 'one handle is round');
+  await hand.changes(async () => hand.drag(await hand.place_of('.handle.turn'), 25, 10));
+  const turned = matrix('frond');
+  assert.ok(Math.abs(turned[3]) < 1e-3 && Math.abs(turned[7] - 1.6) < 1e-3, `the foot stays: ${turned}`);
+  assert.ok(turned[1] > 0.02, `${turned}`);
+  assert.ok((await gap()) < 0.5, 'the stem stands on the box');
+  await page.focus('[data-map=left]');
+  for (let i = 0; i < 4; ++i) {
+    await page.keyboard.press('Shift+ArrowRight');
+    await hand.settled();
+    assert.ok((await gap()) < 0.5, `the stem stands on the box at turn ${i}`);
+  }
+  const before = matrix('left'), middle = (m) => [0.1 * m[0] + 5 * m[1] + m[3], 0.1 * m[4] + 5 * m[5] + m[7]];
+  assert.ok(Math.hypot(before[3], before[7] - 1.6) < 0.01, `keys turn about the foot: ${before}`);
+  await page.keyboard.down('Alt');
+  await hand.drag(await hand.place_of('.handle.turn'), 12, 12);
+  await page.keyboard.up('Alt');
+  await hand.settled();
+  const [a, b] = [middle(before), middle(matrix('left'))];
+  assert.ok(Math.hypot(a[0] - b[0], a[1] - b[1]) < 0.01 && Math.hypot(matrix('left')[3], matrix('left')[7] - 1.6) > 0.05, `${a} ${b}`);
+});
+
+test('what was picked goes when it is no longer true', async (hand, page) => {
+  const [x, y] = await hand.place_of('#view'), pick = async () => {
+    await page.mouse.click(x + 5, y - 40);
+    await page.waitForSelector('#picked dl');
+  };
+  await pick();
+  await page.mouse.move(x, y + 60);
+  await hand.changes(() => hand.drag([x, y + 60], 40, 0));
+  assert.ok(await page.isVisible('#picked') && await page.locator('.point').count() === 1, 'another view shows the same');
+  await page.keyboard.press('Control+z');
+  await hand.changes(async () => hand.drag(await hand.place_of('.point'), 15, 10));
+  assert.ok(await page.isVisible('#picked'), 'its own drag keeps it');
+  await page.keyboard.press('Control+z');
+  await hand.settled();
+  assert.deepEqual([await page.isVisible('#picked'), await page.locator('.point').count()], [false, 0], 'undone, the point is elsewhere');
+  await pick();
+  await hand.type_at('terminal', ' oops');
+  assert.equal(await page.isVisible('#picked'), false);
+  await page.keyboard.press('Control+z');
+  await hand.settled();
+  await pick();
+  await hand.knob('lean').press('PageUp');
+  assert.equal(await page.isVisible('#picked'), false);
+});
+
+test('an error brings the last sharp picture back', async (hand, page, session) => {
+  await hand.settled();
+  const sharp = await hand.pixels();
+  session.told.passes = 1;
+  await hand.type_at('curl', '1');
+  await hand.until(async () => (await hand.pixels()) !== sharp, 'a rough picture of another model shows');
+  await hand.type_at('terminal', ' oops');
+  await page.waitForSelector('#stale:visible');
+  await hand.until(async () => (await hand.pixels()) === sharp, 'the sharp one is back');
+});
+
 test('a click on the picture selects its rule; the point is pulled', async (hand, page) => {
   const [x, y] = await hand.place_of('#view');
   await page.mouse.click(x + 5, y - 40);
@@ -375,21 +516,47 @@ test('a click on the picture selects its rule; the point is pulled', async (hand
   assert.match(hand.last().text, /map frond { matrix /);
 });
 
-test('the grid of variations, and back', async (hand, page) => {
+test('the grid of variations, and back', async (hand, page, session) => {
   await page.click('#tab-vary');
   await page.waitForSelector('#grid button:nth-child(9)');
   await hand.until(() => hand.asked('thumbnail').length === 9, 'nine pictures are asked for');
   assert.match(await page.textContent('#grid button:nth-child(1)'), /lean -1/);
-  await page.waitForTimeout(300);
+  await hand.until(async () => (await page.locator('#grid .waits').count()) === 0, 'all are drawn');
+  const drawn = (cell) => page.evaluate((selector) => document.querySelector(selector).toDataURL(), `#grid ${cell} canvas`);
+  const first = await drawn('button:nth-child(1)');
+  session.told.silent = true;
   await page.click('#grid button:nth-child(1)');
-  await hand.settled();
+  await page.waitForTimeout(100);
+  assert.ok(await drawn('.centre') === first, 'the clicked one is the middle before any answer');
+  assert.equal(await page.locator('#grid .waits').count(), 8);
   assert.equal(hand.last().set.lean, -1);
-  await hand.until(() => hand.asked('vary').length === 2, 'the grid is made anew');
+  session.told.silent = false;
+  await page.click('#vary-again');
+  await hand.until(async () => (await page.locator('#grid .waits').count()) === 0, 'the grid is made anew');
+  const asked = hand.asked('thumbnail').length, says = await page.textContent('#grid');
+  await page.click('#tab-knobs');
+  await page.click('#tab-vary');
+  await page.waitForTimeout(200);
+  assert.deepEqual([hand.asked('thumbnail').length, await page.textContent('#grid')], [asked, says], 'it is as it was');
   await page.selectOption('#vary-kind', 'seed');
   await hand.until(() => hand.asked('vary').at(-1).kind === 'seed', 'seeds are varied');
+  assert.ok(await page.isDisabled('#vary-spread'), 'seeds are not near or far');
   await page.click('#vary-back');
   await hand.settled();
   assert.deepEqual(hand.last().set, {});
+});
+
+test('the middle is the model, however many others there are', async (hand, page, session) => {
+  for (const [count, rows] of [[1, 1], [2, 1], [3, 3], [5, 3]]) {
+    session.told.children = count;
+    await page.click('#tab-vary');
+    await hand.until(async () => (await page.locator('#grid button').count()) === count + 1, `there are ${count} others`);
+    const grid = await page.locator('#grid').boundingBox(), middle = await page.locator('#grid .centre').boundingBox();
+    assert.ok(Math.abs(middle.x + middle.width / 2 - grid.x - grid.width / 2) < 3 && Math.abs(middle.y + middle.height / 2 - grid.y - grid.height / 2) < 3);
+    assert.ok(Math.abs(middle.height - grid.height / rows) < 4, `${middle.height} of ${grid.height}`);
+    await page.click('#tab-knobs');
+    await hand.knob('lean').press('ArrowRight');
+  }
 });
 
 test('time plays, and stops', async (hand, page) => {
@@ -407,11 +574,51 @@ test('time plays, and stops', async (hand, page) => {
   await page.click('#save-film');
   await hand.until(() => hand.asked('write').length === 1, 'the film is asked for');
   assert.deepEqual(hand.asked('write')[0].film, film);
-  await page.click('#tab-knobs');
-  await hand.until(() => hand.last().film === null, 'a single picture is framed by itself');
+  await hand.settled();
+  const { camera } = await page.evaluate(() => window.studio.model);
+  for (const tab of ['knobs', 'out', 'maps']) {
+    await page.click(`#tab-${tab}`);
+    await hand.until(() => hand.last().film === null, 'the view is given');
+    assert.deepEqual(hand.last().camera, camera, 'another tab shows the same view');
+  }
+  await page.click('#tab-time');
+  await hand.until(() => hand.last().film !== null && hand.last().camera === null, 'the film frames again');
   await page.click('#undo');
   await hand.settled();
-  assert.equal(hand.last().time, null);
+  assert.deepEqual([hand.last().time, hand.last().film], [null, null]);
+});
+
+test('the second that shows is the one that is seen', async (hand, page) => {
+  const second = () => page.textContent('#panel-time .knob .number');
+  await page.click('#tab-time');
+  await hand.settled();
+  assert.equal(await second(), '5', 'the whole plant is the end of its growth');
+  assert.deepEqual([hand.last().time, hand.last().film], [null, null], 'nothing moved');
+  await page.click('#play');
+  await hand.until(() => hand.last().time > 2, 'it grows');
+  await page.click('#play');
+  assert.match(await second(), /^\d(\.\d\d?)?$/);
+  await page.click('#undo');
+  assert.equal(await second(), '5');
+  await page.evaluate(() => window.studio.change({ time: 3.25 }));
+  assert.equal(await second(), '1.25', 'from 1 to 10 in 5 seconds');
+}, { opened: { name: 'twig.lsys', text: twig } });
+
+test('a film tells what is done until its file is there', async (hand, page, session) => {
+  session.told.slow = true;
+  await page.click('#tab-time');
+  await page.click('#save-film');
+  await hand.until(() => session.told.film, 'the film is asked for');
+  session.told.film.progress(0.5);
+  const doing = () => page.textContent('#panel-time [role=status]'), bar = page.locator('progress');
+  await hand.until(async () => (await doing()) === 'Drawing: 63 of 125 pictures are there', 'pictures are counted');
+  assert.equal(await bar.getAttribute('value'), '0.5');
+  session.told.film.progress(1);
+  await hand.until(async () => (await doing()) === 'All 125 pictures are drawn. Writing fern.gif …', 'it writes the file');
+  assert.equal(await bar.getAttribute('value'), null, 'nobody knows how long that takes');
+  session.told.film.done();
+  await hand.until(async () => !(await bar.isVisible()), 'it is there');
+  assert.match(await page.textContent('#said'), /^Saved film\.gif/);
 });
 
 test('key frames of knobs are kept, shown, played and removed; the film has them', async (hand, page) => {
@@ -494,7 +701,7 @@ test('a reload finds everything; a link holds the model', async (hand, page, ses
   await hand.until(async () => /no model/.test(await page.textContent('#said')), 'a bad link is told');
 });
 
-test('fingers: one orbits, two zoom, a tap picks', async (hand, page) => {
+test('fingers: one pans a flat model, two zoom, a tap picks', async (hand, page) => {
   const [x, y] = await hand.place_of('#view'), client = await page.context().newCDPSession(page);
   const touch = (type, ...points) => client.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
   await touch('touchStart', [x, y]);

@@ -169,9 +169,9 @@ class BrokenClients(Served):
                   "n.n.(e)*", "../../etc/passwd", ".png", ".usda"]
         fields = ["type", "number", "name", "text", "set", "steps", "time", "seed", "width", "height", "camera", "at",
                   "zoom", "engine", "quality", "threads", "id", "what", "offset", "x", "y", "factor", "path", "suffix",
-                  "options", "matrix", "from", "to"]
+                  "options", "matrix", "from", "to", "value"]
         asks = ["complete", "hover", "definition", "rename", "format", "pick", "zoom", "map", "pull", "digraph", "vary",
-                "thumbnail", "command", "nonsense"]
+                "setting", "thumbnail", "command", "nonsense"]
         with self.studio.page() as page:
             page.receive()
             page.show(**SMALL)
@@ -366,6 +366,15 @@ class Sessions(Served):
             self.assertEqual(page.answer(page.ask("write", path="x.ply", options={"error": 4})).get("path"), "x.ply")
             self.assertIn("error", page.answer(page.ask("write", path="x.ply", options={"keep": "/tmp"})))
         self.assertEqual(self.files(), ["out", "x.ply"])
+
+    def test_a_file_that_comes_is_read(self):
+        with self.studio.page() as page:
+            page.receive()
+            page.show(**{**SMALL, "name": "row.inst", "text": 'use leaf = "leaf.inst"\nobject row { leaf }\n'})
+            self.assertIn("cannot open 'leaf.inst'", page.until(has_type("findings"))[-1]["findings"][0]["text"])
+            pathlib.Path(self.folder.name, "leaf.inst").write_text("object leaf { sphere }\n")
+            self.assertEqual(page.until(has_type("findings"))[-1]["findings"], [])
+            page.until(is_done)
 
     def test_models_name_no_files_elsewhere(self):
         with self.studio.page() as page:

@@ -332,6 +332,7 @@ std::string complete_render(Options& options) {
         if (std::string refused = refusal(options); !refused.empty()) return refused;
     if (output.empty() && options.operands.front() == "-")
         return "a model from standard input has no name: name the picture with '-o FILE'";
+    options.output_is_default = output.empty();
     if (output.empty()) output = model_stem(options.operands.front()) + ".png";
     if (!is_picture_name(output))
         return fmt::format("'{}': the name of a picture must end in .png or .exr", output);

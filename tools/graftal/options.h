@@ -66,8 +66,9 @@ inline constexpr double inspecting_seconds = 10;
 struct Options {
     const Command* command = nullptr;  ///< never null after parse_command_line()
     std::vector<std::string> operands; ///< the model or models; for compare the two pictures
-    RenderOptions render;   ///< `compile` and `output` are of every command: "-" is standard output
-    std::string dump_after; ///< a pass, "all", or ""
+    RenderOptions render;           ///< `compile` and `output` are of every command: "-" is standard output
+    bool output_is_default = false; ///< nobody has named the output: the model's name gave it
+    std::string dump_after;         ///< a pass, "all", or ""
     bool time = false;
     bool quiet = false;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -43,6 +45,23 @@ int conclude(const Options& options, const Compilation& compilation, int signal)
     if (signal) return 128 + signal;
     if (compilation.diagnostics.has_errors()) return exit_fault;
     return compilation.status.ok() ? exit_done : exit_environment;
+}
+
+bool same_place(const std::string& a, const std::string& b) {
+    std::error_code error;
+    const auto place = std::filesystem::weakly_canonical(a, error);
+    return !error && place == std::filesystem::weakly_canonical(b, error) && !error;
+}
+
+bool refuse_own_file(const Options& options, const std::vector<std::string>& uses, Compilation& compilation) {
+    const std::string& output = options.render.output;
+    if (!options.output_is_default ||
+        std::ranges::none_of(uses, [&](const std::string& path) { return same_place(path, output); }))
+        return false;
+    compilation.diagnostics
+        .error(Span(), fmt::format("the model uses '{}', whose name its picture would have", output))
+        .with_hint("name the picture with '-o FILE'");
+    return true;
 }
 
 int conclude_out_of_memory(const std::bad_alloc& fault) noexcept {

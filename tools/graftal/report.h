@@ -3,6 +3,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "compiler/session/values.h"
 #include "runtime/render/picture_session.h"
@@ -21,6 +22,13 @@ void print_findings(const Options& options, const Compilation& compilation);
 
 /// Prints the findings; returns the exit status that follows. `signal`: that interrupted the command, or 0.
 int conclude(const Options& options, const Compilation& compilation, int signal = 0);
+
+/// Whether both names are of one place, by whatever links.
+bool same_place(const std::string& a, const std::string& b);
+
+/// Refuses, with an error, an output that nobody has named where it is one of the files that the model
+/// `uses`: a picture by the model's name may be its texture.
+bool refuse_own_file(const Options& options, const std::vector<std::string>& uses, Compilation& compilation);
 
 /// Says that the memory did not suffice, and for what, without taking any; returns the exit status that
 /// follows.

@@ -17,7 +17,7 @@ bool agree(const Affine& a, const Affine& b, double size) {
 
 } // namespace
 
-Congruence find_congruence(const CutGraph& cut, const Symmetry& symmetry) {
+Congruence find_congruence(const DetailGraph& cut, const Symmetry& symmetry) {
     const auto count = static_cast<NodeId>(cut.nodes.size());
     std::vector<std::vector<std::uint32_t>> pairs_of(count);
     for (std::uint32_t p = 0; p < symmetry.pairs.size(); ++p) {

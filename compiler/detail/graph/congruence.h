@@ -17,6 +17,6 @@ struct Congruence {
     std::vector<std::uint32_t> order; ///< pairs, each after one that leads to one of its nodes
 };
 
-Congruence find_congruence(const CutGraph& cut, const Symmetry& symmetry);
+Congruence find_congruence(const DetailGraph& cut, const Symmetry& symmetry);
 
 } // namespace graftal

@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Limits for cells, as build_cut_graph.cpp has them for other objects.
+/// Limits for cells, as build_detail_graph.cpp has them for other objects.
 constexpr std::size_t uncullable_leaves_of_cell = 16;
 constexpr double thinnest_proxy_of_cell = 0.02;
 
@@ -43,10 +43,10 @@ double mean_shadow(Vec3 half) {
 
 class CellBuilder {
   public:
-    CellBuilder(CutGraph& cut, std::shared_ptr<const CellSource> source, const RunBounds& bounds)
+    CellBuilder(DetailGraph& cut, std::shared_ptr<const CellSource> source, const RunBounds& bounds)
         : cut_(cut), source_(std::move(source)), bounds_(bounds) {}
 
-    void fill(CutNode& node, std::size_t level, std::size_t index) {
+    void fill(DetailNode& node, std::size_t level, std::size_t index) {
         const Box& box = bounds_.boxes(level)[index];
         if (level <= cell_level)
             fill_cell(node, box, index * RunBounds::range_size(level), RunBounds::range_size(level));
@@ -55,22 +55,22 @@ class CellBuilder {
     }
 
   private:
-    static CutNode like(const CutNode& node) {
-        CutNode child;
+    static DetailNode like(const DetailNode& node) {
+        DetailNode child;
         child.name = node.name;
         return child;
     }
 
-    void fill_inner(CutNode& node, const Box& box, std::size_t level, std::size_t index) {
+    void fill_inner(DetailNode& node, const Box& box, std::size_t level, std::size_t index) {
         const std::size_t first = index * RunBounds::ranges_a_range;
         const std::size_t end = std::min(first + RunBounds::ranges_a_range, bounds_.boxes(level - 1).size());
         Ball ball{box.centre(), 0};
         for (std::size_t i = first; i < end; ++i) {
-            CutNode child = like(node);
+            DetailNode child = like(node);
             fill(child, level - 1, i);
             ball.radius =
                 std::max(ball.radius, glm::distance(ball.centre, child.ball.centre) + child.ball.radius);
-            CutEdge edge;
+            DetailEdge edge;
             edge.child = static_cast<NodeId>(cut_.nodes.size());
             edge.similarity = true;
             node.edges.push_back(edge);
@@ -81,7 +81,7 @@ class CellBuilder {
         node.node_from_proxy = Affine::translate(box.centre()) * Affine::scale(half_of(box));
     }
 
-    void fill_cell(CutNode& node, const Box& box, std::size_t first, std::size_t most) {
+    void fill_cell(DetailNode& node, const Box& box, std::size_t first, std::size_t most) {
         auto cell = std::make_shared<EdgeCell>();
         const Run& run = *source_->run;
         *cell = {source_, first, std::min(most, run.size() - first), box};
@@ -138,7 +138,7 @@ class CellBuilder {
         return glm::max(half, Vec3(thinnest_proxy_of_cell * std::max({half.x, half.y, half.z, 1e-12})));
     }
 
-    CutGraph& cut_;
+    DetailGraph& cut_;
     const std::shared_ptr<const CellSource> source_;
     const RunBounds& bounds_;
 };
@@ -167,11 +167,11 @@ std::size_t EdgeCell::size() const {
     return edges;
 }
 
-std::size_t edge_count(const CutNode& node, bool cut) {
+std::size_t edge_count(const DetailNode& node, bool cut) {
     return node.cell && !cut ? node.cell->size() : followed_edges(node, cut).size();
 }
 
-void add_cells(CutGraph& cut, CutNode& node, const PackedEdges& edges, const RunBounds& bounds,
+void add_cells(DetailGraph& cut, DetailNode& node, const PackedEdges& edges, const RunBounds& bounds,
                const std::function<NodeId(const Primitive&)>& node_of) {
     auto source = std::make_shared<CellSource>();
     static_cast<PackedEdges&>(*source) = edges;

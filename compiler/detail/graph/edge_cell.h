@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "compiler/analysis/run_bounds.h"
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 
 namespace graftal {
 
@@ -21,7 +21,7 @@ struct CellSource : PackedEdges {
 };
 
 /// An edge of a cell.
-struct CellEdge : CutEdge {
+struct CellEdge : DetailEdge {
     RunShape shape;
     std::uint16_t colour = 0;
 };
@@ -71,18 +71,18 @@ struct EdgeCell {
 inline constexpr std::size_t cell_level = 1;
 
 /// Calls `visit` on the edges that a visit of the node follows, in their order (followed_edges()).
-template<typename Visit> void for_each_edge(const CutNode& node, bool cut, const Visit& visit) {
+template<typename Visit> void for_each_edge(const DetailNode& node, bool cut, const Visit& visit) {
     if (node.cell && !cut) return node.cell->for_each(visit);
-    for (const CutEdge& edge : followed_edges(node, cut))
+    for (const DetailEdge& edge : followed_edges(node, cut))
         visit(edge);
 }
 
 /// Number of edges that for_each_edge() visits.
-std::size_t edge_count(const CutNode& node, bool cut);
+std::size_t edge_count(const DetailNode& node, bool cut);
 
 /// Fills in `node`, which has everything else of its object but edges, ball and proxy, and adds the nodes
 /// below it. `node_of` gives the node of a primitive.
-void add_cells(CutGraph& cut, CutNode& node, const PackedEdges& edges, const RunBounds& bounds,
+void add_cells(DetailGraph& cut, DetailNode& node, const PackedEdges& edges, const RunBounds& bounds,
                const std::function<NodeId(const Primitive&)>& node_of);
 
 } // namespace graftal

@@ -23,16 +23,16 @@ std::size_t PieceKindHash::operator()(const PieceKind& kind) const {
     return h ^ (h >> 32);
 }
 
-double cut_detail(const CutNode& node, double error_px) {
+double cut_detail(const DetailNode& node, double error_px) {
     return error_px > 0 ? std::max(1.0, node.terminal_px / error_px) : 1;
 }
 
-bool ends_by(const CutNode& node, std::uint32_t steps, bool small) {
+bool ends_by(const DetailNode& node, std::uint32_t steps, bool small) {
     if (node.primitive || node.unbounded) return false;
     return ends_recursion(node, steps, small);
 }
 
-bool is_cut(const CutNode& node, std::uint32_t steps, double detail, double error_px) {
+bool is_cut(const DetailNode& node, std::uint32_t steps, double detail, double error_px) {
     return ends_by(node, steps, detail <= cut_detail(node, error_px));
 }
 

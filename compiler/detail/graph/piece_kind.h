@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 
 namespace graftal {
 
@@ -33,19 +33,19 @@ struct PieceKindHash {
 
 /// The kind of all that differ from this one by nothing but levels, where the node is ending: it has no use
 /// for them.
-inline PieceKind without_idle_levels(const CutGraph& cut, PieceKind kind) {
+inline PieceKind without_idle_levels(const DetailGraph& cut, PieceKind kind) {
     if (!cut.nodes[kind.node].unending) kind.steps = unlimited_steps;
     return kind;
 }
 
 /// The detail from which down a cullable node is cut, 1 at least: more if its terminal takes its place before
 /// it is culled. `error_px`: as Projection::error_px().
-double cut_detail(const CutNode& node, double error_px);
+double cut_detail(const DetailNode& node, double error_px);
 
 /// The rule that ends recursion: no level left, or too small.
-bool is_cut(const CutNode& node, std::uint32_t steps, double detail, double error_px);
+bool is_cut(const DetailNode& node, std::uint32_t steps, double detail, double error_px);
 
 /// The rule of is_cut(). `small`: enough to be cut for its size.
-bool ends_by(const CutNode& node, std::uint32_t steps, bool small);
+bool ends_by(const DetailNode& node, std::uint32_t steps, bool small);
 
 } // namespace graftal

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 
 namespace graftal {
 
@@ -11,11 +11,12 @@ namespace graftal {
 /// and says by how much it changed. It is called on every node with edges, masters first, until none changes
 /// by `enough`. In a cycle that draws little besides itself that takes long. So small graphs get more sweeps
 /// than the `fewest` that end any.
-template<typename Update> void settle(const CutGraph& cut, int fewest, double enough, const Update& update) {
+template<typename Update>
+void settle(const DetailGraph& cut, int fewest, double enough, const Update& update) {
     constexpr std::size_t enough_edges = 4'000'000, most_sweeps = 100'000;
     const std::vector<NodeId> order = masters_first(cut);
     std::size_t edges = 1;
-    for (const CutNode& node : cut.nodes)
+    for (const DetailNode& node : cut.nodes)
         edges += node.edges.size();
     const auto sweeps = std::clamp(enough_edges / edges, static_cast<std::size_t>(fewest), most_sweeps);
     for (std::size_t sweep = 0; sweep < sweeps; ++sweep) {

@@ -16,15 +16,15 @@ constexpr std::size_t max_checks = 20'000;
 /// The cut as CongruentPairs knows it.
 class CutShape {
   public:
-    explicit CutShape(const CutGraph& cut) : cut_(cut) {}
+    explicit CutShape(const DetailGraph& cut) : cut_(cut) {}
 
     std::size_t size() const { return cut_.nodes.size(); }
     const std::optional<Primitive>& primitive(NodeId id) const { return cut_.nodes[id].primitive; }
-    const std::vector<CutEdge>& edges(NodeId id) const { return cut_.nodes[id].edges; }
-    const std::vector<CutEdge>& stop_edges(NodeId id) const { return cut_.nodes[id].stop_edges; }
+    const std::vector<DetailEdge>& edges(NodeId id) const { return cut_.nodes[id].edges; }
+    const std::vector<DetailEdge>& stop_edges(NodeId id) const { return cut_.nodes[id].stop_edges; }
 
     bool alike(NodeId a, NodeId b) const {
-        const CutNode &x = cut_.nodes[a], &y = cut_.nodes[b];
+        const DetailNode &x = cut_.nodes[a], &y = cut_.nodes[b];
         return x.primitive == y.primitive && x.combination == y.combination && x.cell == y.cell &&
                x.unending == y.unending && x.sealed == y.sealed && x.unbounded == y.unbounded &&
                x.cullable == y.cullable && x.terminal_px == y.terminal_px;
@@ -32,22 +32,22 @@ class CutShape {
 
     /// True for a cell, whose parts are no edges, and for operands, which take parts.
     bool fixed(NodeId id) const {
-        const CutNode& node = cut_.nodes[id];
+        const DetailNode& node = cut_.nodes[id];
         return node.sealed || node.cell || node.is_combined();
     }
     double radius(NodeId id) const { return cut_.nodes[id].ball.radius; }
     const Affine* proxy(NodeId id) const {
-        const CutNode& node = cut_.nodes[id];
+        const DetailNode& node = cut_.nodes[id];
         return node.stop_edges.empty() && node.cullable ? &node.node_from_proxy : nullptr;
     }
 
   private:
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
 };
 
 class Finder {
   public:
-    explicit Finder(const CutGraph& cut) : cut_(cut), shape_(cut), pairs_(shape_) {}
+    explicit Finder(const DetailGraph& cut) : cut_(cut), shape_(cut), pairs_(shape_) {}
 
     Symmetry run() && {
         const auto count = static_cast<NodeId>(cut_.nodes.size());
@@ -79,11 +79,11 @@ class Finder {
 
     /// Equal for congruent nodes. Their balls may differ, so sizes of balls are not in it.
     std::tuple<std::size_t, long long, long long> signature(NodeId id) const {
-        const CutNode& node = cut_.nodes[id];
+        const DetailNode& node = cut_.nodes[id];
         const auto rounded = [](double x) { return std::llround(std::log(std::max(x, 1e-300)) * 1e6); };
         double spread = 0;
         double stretch = 0;
-        for (const CutEdge& edge : node.edges) {
+        for (const DetailEdge& edge : node.edges) {
             spread += glm::distance(edge.node_from_child(pairs_.centre(edge.child)), pairs_.centre(id));
             stretch += edge.stretch;
         }
@@ -113,7 +113,7 @@ class Finder {
         return false;
     }
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     const CutShape shape_;
     CongruentPairs<CutShape> pairs_;
     Symmetry result_;
@@ -122,7 +122,7 @@ class Finder {
 
 } // namespace
 
-Symmetry find_symmetry(CutGraph& cut) {
+Symmetry find_symmetry(DetailGraph& cut) {
     Symmetry symmetry = Finder(cut).run();
     // One ball a class, its smallest: congruent pieces then end at the same size.
     const auto take_smaller = [&](NodeId a, NodeId b, const Affine& a_from_b) {

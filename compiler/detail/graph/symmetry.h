@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/passes/congruent_pairs.h"
 
 namespace graftal {
@@ -20,6 +20,6 @@ struct Symmetry {
 
 /// Finds the classes (passes/congruent_pairs.h). Bounded effort. All balls of a class become images of its
 /// smallest.
-Symmetry find_symmetry(CutGraph& cut);
+Symmetry find_symmetry(DetailGraph& cut);
 
 } // namespace graftal

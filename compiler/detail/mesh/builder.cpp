@@ -53,6 +53,15 @@ void MeshBuilder::add(const Primitive& primitive, int fineness, const Affine& bo
         add_flat(primitive, body_from_leaf, mirrored, leaf);
 }
 
+/// Asked of a triangle by its corners, counter-clockwise seen from outside unless the map has mirrored them.
+bool MeshBuilder::leaves_out(Vec3 a, Vec3 b, Vec3 c, bool mirrored) const {
+    if (left_out_ == Vec3(0.0)) return false;
+    constexpr double edge_on = 1e-6; // a rim stays
+    const Vec3 normal = glm::cross(b - a, c - a);
+    const double along = mirrored ? -glm::dot(normal, left_out_) : glm::dot(normal, left_out_);
+    return along > edge_on * glm::length(normal) * glm::length(left_out_);
+}
+
 void MeshBuilder::add_smooth(const Primitive& primitive, int fineness, const Affine& body_from_leaf,
                              std::uint32_t leaf, const NormalField& normals) {
     const TessellatedPrimitive& shape = tessellated(primitive, fineness);
@@ -63,8 +72,11 @@ void MeshBuilder::add_smooth(const Primitive& primitive, int fineness, const Aff
         const Vec3 own = glm::normalize(normal_by_normal * shape.normals[i]);
         mesh.normals.push_back(unit_or(own + normals.at(mesh.vertices.back()), own));
     }
+    const bool mirrored = glm::determinant(body_from_leaf.linear) < 0;
     for (const auto& t : shape.triangles)
-        push({first + t[0], first + t[1], first + t[2]}, leaf);
+        if (!leaves_out(mesh.vertices[first + t[0]], mesh.vertices[first + t[1]], mesh.vertices[first + t[2]],
+                        mirrored))
+            push({first + t[0], first + t[1], first + t[2]}, leaf);
 }
 
 void MeshBuilder::add_textured(const Primitive& primitive, int fineness, const Affine& body_from_leaf,
@@ -72,10 +84,14 @@ void MeshBuilder::add_textured(const Primitive& primitive, int fineness, const A
     GRAFTAL_CHECK(smooth_, "texture in a flat mesh");
     const TessellatedPrimitive& shape = tessellated(primitive, fineness);
     const Mat3 normal_by_normal = normal_map(body_from_leaf.linear);
+    const bool mirrored = glm::determinant(body_from_leaf.linear) < 0;
     for (const auto& triangle : shape.triangles) {
         std::array<Vec3, 3> corner;
         for (std::size_t k = 0; k < 3; ++k)
             corner[k] = shape.vertices[triangle[k]];
+        if (leaves_out(body_from_leaf(corner[0]), body_from_leaf(corner[1]), body_from_leaf(corner[2]),
+                       mirrored))
+            continue;
         for (const auto& uv : texture_coordinates(primitive, space, corner))
             mesh.uv.push_back(uv);
         const Vec3 facet = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
@@ -98,7 +114,7 @@ void MeshBuilder::add_facets(const Primitive& primitive, const Affine& body_from
             corner[k] = body_from_leaf(shape.vertices[triangle[k]]);
         const Vec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
         const double length = glm::length(normal);
-        if (!(length > 0)) continue;
+        if (!(length > 0) || leaves_out(corner[0], corner[1], corner[2], mirrored)) continue;
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
         for (const Vec3& point : corner) {
             mesh.vertices.push_back(point);
@@ -114,11 +130,14 @@ void MeshBuilder::add_flat(const Primitive& primitive, const Affine& body_from_l
     index_.clear();
     for (const Vec3& vertex : shape.vertices)
         index_.push_back(latest_.vertex(body_from_leaf(vertex)));
-    for (const FacetCorners& c : facet_sides(primitive)[mirrored])
+    for (const FacetCorners& c : facet_sides(primitive)[mirrored]) {
+        const auto corner = [&](std::size_t k) { return body_from_leaf(shape.vertices[c[k]]); };
+        if (leaves_out(corner(0), corner(1), corner(2), false)) continue;
         latest_.add({.corners = {index_[c[0]], index_[c[1]], index_[c[2]],
                                  c[3] == no_facet_corner ? Facet::no_corner : index_[c[3]]},
                      .leaf = leaf,
                      .solid = traits_of(primitive).solid});
+    }
     if (latest_.facets().size() > most_latest_facets) latest_.move_to(all_);
 }
 

@@ -20,6 +20,9 @@ class MeshBuilder {
     /// `smooth`: some primitive is curved, all vertices get normals.
     explicit MeshBuilder(bool smooth) : smooth_(smooth) {}
 
+    /// Leaves out triangles whose outer side faces this way, from now on: a sheet has one face then. Zero:
+    /// none.
+    void leave_out(Vec3 facing) { left_out_ = facing; }
     /// Adds a primitive, meshed at the fineness, placed by a regular map. `leaf` is the caller's number.
     /// What is curved has its own normals, with the field's added to them.
     void add(const Primitive& primitive, int fineness, const Affine& body_from_leaf, std::uint32_t leaf,
@@ -45,10 +48,12 @@ class MeshBuilder {
                     std::uint32_t leaf);
     void add_flat(const Primitive& primitive, const Affine& body_from_leaf, bool mirrored,
                   std::uint32_t leaf);
+    bool leaves_out(Vec3 a, Vec3 b, Vec3 c, bool mirrored) const;
     void push(const std::array<std::uint32_t, 3>& corners, std::uint32_t leaf);
     std::uint32_t used(std::uint32_t vertex);
 
     bool smooth_;
+    Vec3 left_out_{0.0};
     // Facets of a flat mesh. Neighbours come soon after each other: most faces meet while they are among the
     // latest few, whose tables are small enough for a cache.
     FacetSet latest_;

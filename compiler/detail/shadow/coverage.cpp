@@ -33,7 +33,7 @@ constexpr double full_share = 0.5;
 /// Fits the groups of congruent nodes, masters first.
 class Fitter {
   public:
-    Fitter(CutGraph& cut, const Symmetry& symmetry, std::uint64_t most_bodies, WorkMeter* meter)
+    Fitter(DetailGraph& cut, const Symmetry& symmetry, std::uint64_t most_bodies, WorkMeter* meter)
         : cut_(cut), symmetry_(symmetry), congruence_(find_congruence(cut, symmetry)),
           members_(cut.nodes.size()), seen_(cut.nodes.size()), shadowless_(cut.nodes.size(), false),
           ends_full_(cut.nodes.size(), false), most_draws_(most_bodies), meter_(meter) {
@@ -97,7 +97,7 @@ class Fitter {
     }
 
     bool fittable(NodeId id) const {
-        const CutNode& node = cut_.nodes[id];
+        const DetailNode& node = cut_.nodes[id];
         return !node.primitive && !node.is_combined() && !node.edges.empty() &&
                node.edges.size() <= most_edges && node.ball.radius > 0;
     }
@@ -112,7 +112,7 @@ class Fitter {
         for (std::size_t c = components.members.size(); c-- > 0;) // users before their masters
             for (const NodeId id : components.members[c])
                 if (wanted[id] && fittable(id))
-                    for (const CutEdge& edge : cut_.nodes[id].edges)
+                    for (const DetailEdge& edge : cut_.nodes[id].edges)
                         wanted[congruence_.root[edge.child]] = true;
         return wanted;
     }
@@ -125,7 +125,7 @@ class Fitter {
         for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
             if (congruence_.root[id] != id) continue;
             std::vector<NodeId> masters;
-            for (const CutEdge& edge : cut_.nodes[id].edges)
+            for (const DetailEdge& edge : cut_.nodes[id].edges)
                 masters.push_back(congruence_.root[edge.child]);
             std::sort(masters.begin(), masters.end());
             masters.erase(std::unique(masters.begin(), masters.end()), masters.end());
@@ -149,7 +149,7 @@ class Fitter {
         if (cut_.nodes[root].unending && !reaches_area(root)) {
             shadowless_[root] = true;
             ends_full_[root] =
-                ends_full(root) && std::ranges::all_of(cut_.nodes[root].edges, [&](const CutEdge& edge) {
+                ends_full(root) && std::ranges::all_of(cut_.nodes[root].edges, [&](const DetailEdge& edge) {
                     return ends_full_[congruence_.root[edge.child]];
                 });
             return;
@@ -159,7 +159,7 @@ class Fitter {
 
     /// Whether something it holds, cycles aside, has a shadow.
     bool reaches_area(NodeId root) const {
-        for (const CutEdge& edge : cut_.nodes[root].edges) {
+        for (const DetailEdge& edge : cut_.nodes[root].edges) {
             const NodeId master = congruence_.root[edge.child];
             if (place_[master] == nowhere && !shadowless_[master]) return true;
         }
@@ -169,7 +169,7 @@ class Fitter {
     /// Whether what is drawn of a shadowless node where it is cut covers about as much as its ellipsoid does:
     /// a full terminal, say, not a line along it. A node that is not cullable is never cut itself.
     bool ends_full(NodeId root) {
-        const CutNode& node = cut_.nodes[root];
+        const DetailNode& node = cut_.nodes[root];
         if (!node.cullable) return true;
         if (node.stop_edges.empty() || is_flat(node)) return false;
         double area = 0;
@@ -256,7 +256,7 @@ class Fitter {
     double growth_of_area() const {
         std::vector<std::vector<std::pair<std::size_t, double>>> factors(roots_.size());
         for (std::size_t i = 0; i < roots_.size(); ++i)
-            for (const CutEdge& edge : cut_.nodes[roots_[i]].edges) {
+            for (const DetailEdge& edge : cut_.nodes[roots_[i]].edges) {
                 const std::size_t at = place_[congruence_.root[edge.child]];
                 if (at == nowhere) continue;
                 const Vec3 s = singular_values(edge.node_from_child.linear);
@@ -324,14 +324,14 @@ class Fitter {
             }
         }
         for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
-            std::vector<CutEdge>& edges = cut_.nodes[id].edges;
+            std::vector<DetailEdge>& edges = cut_.nodes[id].edges;
             if (seen_[id].size() != edges.size()) continue;
             for (std::size_t i = 0; i < edges.size(); ++i)
                 edges[i].weight = std::max(seen_[id][i], 1e-300);
         }
     }
 
-    CutGraph& cut_;
+    DetailGraph& cut_;
     const Symmetry& symmetry_;
     Congruence congruence_;
     std::vector<std::vector<NodeId>> members_; ///< by root
@@ -352,7 +352,7 @@ class Fitter {
 
 } // namespace
 
-std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry, std::uint64_t most_bodies,
+std::uint64_t fit_proxies(DetailGraph& cut, const Symmetry& symmetry, std::uint64_t most_bodies,
                           WorkMeter* meter) {
     Fitter fitter(cut, symmetry, most_bodies, meter);
     fitter.run();
@@ -362,7 +362,7 @@ std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry, std::uint64_t
     return fitter.draws();
 }
 
-bool is_flat(const CutNode& node) {
+bool is_flat(const DetailNode& node) {
     // The ellipsoid in the box, which is a fiftieth as thick as long at least.
     const Vec3 axes = singular_values(node.node_from_proxy.linear); // the ellipsoid may be turned
     return axes.z <= 0.021 * axes.x;

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "compiler/detail/detail_options.h"
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/graph/symmetry.h"
 #include "compiler/support/control.h"
 
@@ -25,11 +25,11 @@ namespace graftal {
 /// Draws about `most_bodies` once for each node, and as many again for cycles. Where fewer are allowed,
 /// subtrees are unfolded to fewer parts; beyond that, nodes keep the ellipsoid in their box. Returns the
 /// number of bodies that it drew: its cost, which the meter counts (null: nobody does).
-std::uint64_t fit_proxies(CutGraph& cut, const Symmetry& symmetry,
+std::uint64_t fit_proxies(DetailGraph& cut, const Symmetry& symmetry,
                           std::uint64_t most_bodies = PrepareOptions::usual_bodies,
                           WorkMeter* meter = nullptr);
 
 /// Whether the box of a shadowless node is a sheet or a line. Requires fit_proxies().
-bool is_flat(const CutNode& node);
+bool is_flat(const DetailNode& node);
 
 } // namespace graftal

@@ -48,12 +48,12 @@ Lit tinted(const Lit& lit, const PathTint& tint) {
             rest * lit.fixed + lit.inherits * tint.premultiplied, rest * lit.open, lit.inherits};
 }
 
-Lit lit_of(const CutGraph& cut, const CutNode& node, const std::vector<Lit>& below) {
+Lit lit_of(const DetailGraph& cut, const DetailNode& node, const std::vector<Lit>& below) {
     Lit sum = nothing;
     double weights = 0;
-    for (const CutEdge& edge : node.edges)
+    for (const DetailEdge& edge : node.edges)
         weights += edge.weight;
-    for (const CutEdge& edge : node.edges) {
+    for (const DetailEdge& edge : node.edges) {
         Lit lit = below[edge.child];
         if (edge.material) lit = made_of(lit, cut.materials[*edge.material]);
         sum.add(edge.weight / weights, tinted(lit, edge.tint));
@@ -61,7 +61,7 @@ Lit lit_of(const CutGraph& cut, const CutNode& node, const std::vector<Lit>& bel
     return sum;
 }
 
-Lit lit_of_cell(const CutGraph& cut, const EdgeCell& cell) {
+Lit lit_of_cell(const DetailGraph& cut, const EdgeCell& cell) {
     Lit sum = nothing;
     double shadow = 0;
     cell.for_each_shadow([&](const std::optional<MaterialId>&, double area) { shadow += area; });
@@ -74,7 +74,7 @@ Lit lit_of_cell(const CutGraph& cut, const EdgeCell& cell) {
 
 } // namespace
 
-void set_lit_colours(CutGraph& cut) {
+void set_lit_colours(DetailGraph& cut) {
     std::vector<Lit> lit(cut.nodes.size());
     for (NodeId id = 0; id < cut.nodes.size(); ++id)
         if (cut.nodes[id].cell) lit[id] = lit_of_cell(cut, *cut.nodes[id].cell);
@@ -84,7 +84,7 @@ void set_lit_colours(CutGraph& cut) {
                          std::abs(lit[id].open - before.open)});
     });
     for (NodeId id = 0; id < cut.nodes.size(); ++id) {
-        CutNode& node = cut.nodes[id];
+        DetailNode& node = cut.nodes[id];
         node.lit.reset();
         if (node.primitive) continue;
         const double scatter = node.finish ? scatter_of(cut.materials[*node.finish]) : Material().diffuse;

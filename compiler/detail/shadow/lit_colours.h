@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 
 namespace graftal {
 
@@ -9,6 +9,6 @@ namespace graftal {
 /// twice. Parts that inherit their finish are taken to have the node's. No channel is above 1.
 ///
 /// Requires set_finishes(); weighs as that. Sets none where the finish scatters no light.
-void set_lit_colours(CutGraph& cut);
+void set_lit_colours(DetailGraph& cut);
 
 } // namespace graftal

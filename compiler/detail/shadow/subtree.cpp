@@ -40,7 +40,7 @@ std::vector<Vec3> directions(std::size_t count) {
 
 } // namespace
 
-ShadowMeasurer::ShadowMeasurer(const CutGraph& cut, std::size_t direction_count)
+ShadowMeasurer::ShadowMeasurer(const DetailGraph& cut, std::size_t direction_count)
     : cut_(cut), directions_(directions(direction_count)), coarse_(Effort::coarse_grid),
       fine_(Effort::fine_grid) {}
 
@@ -77,9 +77,9 @@ void ShadowMeasurer::unfold(NodeId root, std::size_t most, bool ended) {
     Walk<Waiting, std::less<>> largest;
     const auto open = [&](const Part& parent, std::size_t reused) {
         const bool first = reused == SIZE_MAX;
-        const std::vector<CutEdge>& edges = followed_edges(cut_.nodes[parent.node], first && ended);
+        const std::vector<DetailEdge>& edges = followed_edges(cut_.nodes[parent.node], first && ended);
         for (std::uint32_t i = 0; i < edges.size(); ++i) {
-            const CutEdge& edge = edges[i];
+            const DetailEdge& edge = edges[i];
             Part part{edge.child, parent.place * edge.node_from_child, parent.scale * edge.stretch,
                       first ? i : parent.edge, edge.material ? edge.material : parent.material};
             const std::size_t at = i == 0 && !first ? reused : parts_.size();
@@ -105,7 +105,7 @@ void ShadowMeasurer::unfold(NodeId root, std::size_t most, bool ended) {
 void ShadowMeasurer::place_bodies() {
     bodies_.clear();
     for (const Part& part : parts_) {
-        const CutNode& node = cut_.nodes[part.node];
+        const DetailNode& node = cut_.nodes[part.node];
         const Primitive primitive = node.primitive.value_or(PrimitiveKind::sphere);
         bodies_.push_back(
             {primitive,
@@ -115,7 +115,7 @@ void ShadowMeasurer::place_bodies() {
 }
 
 /// Where the material's picture is clear a primitive throws no shadow: it is as much smaller.
-Affine ShadowMeasurer::solid_part(const CutNode& primitive, const Part& part) const {
+Affine ShadowMeasurer::solid_part(const DetailNode& primitive, const Part& part) const {
     const double coverage = part.material ? cut_.materials[*part.material].coverage : 1;
     if (coverage == 1) return {};
     const Vec3 centre = primitive.ball.centre;

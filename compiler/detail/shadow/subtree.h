@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/shadow/shadow.h"
 
 namespace graftal {
@@ -33,7 +33,7 @@ class ShadowMeasurer {
   public:
     /// Keeps a reference to the graph, whose proxies may change between two measurements. Looks along
     /// `direction_count` directions: 16 at most.
-    ShadowMeasurer(const CutGraph& cut, std::size_t direction_count);
+    ShadowMeasurer(const DetailGraph& cut, std::size_t direction_count);
 
     const std::vector<Vec3>& along() const { return directions_; }
     /// Bodies drawn so far: what all this costs.
@@ -60,10 +60,10 @@ class ShadowMeasurer {
     std::size_t bodies_of(const Part& part) const;
     void unfold(NodeId root, std::size_t most, bool ended);
     void place_bodies();
-    Affine solid_part(const CutNode& primitive, const Part& part) const;
+    Affine solid_part(const DetailNode& primitive, const Part& part) const;
     double draw(Shadow& shadow, std::vector<double>& seen);
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     std::vector<Vec3> directions_;
     Shadow coarse_, fine_;
     std::vector<Part> parts_;

@@ -77,12 +77,12 @@ void lay_line(BoxCount& count) {
 
 } // namespace
 
-BoxCount count_boxes(const CutGraph& cut, NodeId node, std::uint32_t steps, std::uint64_t most_work,
+BoxCount count_boxes(const DetailGraph& cut, NodeId node, std::uint32_t steps, std::uint64_t most_work,
                      std::size_t most_boxes) {
     BoxCount count;
-    const CutNode& whole = cut.nodes[node];
+    const DetailNode& whole = cut.nodes[node];
     if (whole.unbounded || !(whole.ball.radius > 0)) return count;
-    if (std::ranges::any_of(cut.nodes, &CutNode::is_combined)) return count; // its parts are not all of it
+    if (std::ranges::any_of(cut.nodes, &DetailNode::is_combined)) return count; // its parts are not all of it
     PointSystem system(cut, most_boxes);
     double side = 2 * whole.ball.radius / first_boxes_across;
     std::vector<PointSystem::Point> points;

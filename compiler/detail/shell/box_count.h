@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 
 namespace graftal {
 
@@ -25,7 +25,7 @@ struct BoxCount {
 /// until `most_work` moves of one (WorkRates::shell_points) or `most_boxes` points end that. A solid counts
 /// by its surface. No rows for an unbounded node, and no slope from less than three rows. Requires a bounded
 /// radius.
-BoxCount count_boxes(const CutGraph& cut, NodeId node, std::uint32_t steps, std::uint64_t most_work,
+BoxCount count_boxes(const DetailGraph& cut, NodeId node, std::uint32_t steps, std::uint64_t most_work,
                      std::size_t most_boxes = 4'000'000);
 
 } // namespace graftal

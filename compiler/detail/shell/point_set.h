@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/shell/inside_grid.h"
 #include "compiler/support/control.h"
 

@@ -40,7 +40,7 @@ constexpr std::uint64_t points_a_look = 1 << 14;
 
 } // namespace
 
-PointSystem::PointSystem(const CutGraph& cut, std::size_t most_points, const CancelFlag& cancel)
+PointSystem::PointSystem(const DetailGraph& cut, std::size_t most_points, const CancelFlag& cancel)
     : cut_(cut), most_points_(most_points),
       painted_(cut.tinted || !cut.materials.empty()), control_{cancel, {}},
       meter_(control_, "shell", points_a_look) {}
@@ -81,10 +81,10 @@ bool PointSystem::add_large_parts() {
     Walk<Part, std::less<>> walk({.most_visits = most_large_parts});
     walk.push(whole);
     for (Part part; walk.next(part);) {
-        const CutNode& node = cut_.nodes[part.black.node];
+        const DetailNode& node = cut_.nodes[part.black.node];
         const bool cut = node.unending && part.black.steps == 0;
         bool fits = true;
-        for_each_edge(node, cut, [&](const CutEdge& edge) {
+        for_each_edge(node, cut, [&](const DetailEdge& edge) {
             Part child{descend(cut_, part.black, edge, cut), descend(cut_, part.white, edge, cut), 0};
             if (const auto primitive = cut_.nodes[edge.child].primitive) {
                 fits = fits &&
@@ -119,7 +119,7 @@ PointSystem::CoarseStates PointSystem::take_coarse() {
     return found;
 }
 
-double PointSystem::stretch_of(const CutEdge& edge) const {
+double PointSystem::stretch_of(const DetailEdge& edge) const {
     return cut_.contractive ? edge.stretch : edge.volume_stretch;
 }
 
@@ -148,14 +148,14 @@ bool PointSystem::add_states(const PieceKind& root) {
     for (Reached reached; walk.next(reached);) {
         const auto [stretch, number] = reached;
         if (stretch < states_[number].stretch) continue;
-        const CutNode& node = node_of(states_[number]);
+        const DetailNode& node = node_of(states_[number]);
         if (node.unbounded) return false;
         const std::uint32_t steps = states_[number].key.steps;
         const double diameter = 2 * node.ball.radius * stretch;
         states_[number].tiny = diameter <= cell_;
         states_[number].cut = node.unending && steps == 0;
         if (states_[number].tiny) continue;
-        for (const CutEdge& edge : followed_edges(node, states_[number].cut)) {
+        for (const DetailEdge& edge : followed_edges(node, states_[number].cut)) {
             if (cut_.nodes[edge.child].primitive) continue;
             const auto child = state_number({edge.child, steps_below(steps, edge)});
             work_ += moves_a_relaxation;
@@ -174,17 +174,17 @@ bool PointSystem::add_states(const PieceKind& root) {
 
 bool PointSystem::start(std::uint32_t number) {
     State& state = states_[number];
-    const CutNode& node = node_of(state);
+    const DetailNode& node = node_of(state);
     if (state.tiny) return add(number, {0, 0, 0}, ended(node));
     if (edge_count(node, state.cut) == 0)
         return sample(number, PrimitiveKind::sphere, node.node_from_proxy, mean_of(node));
     bool fits = true;
-    for_each_edge(node, state.cut, [&](const CutEdge& edge) {
+    for_each_edge(node, state.cut, [&](const DetailEdge& edge) {
         if (const auto primitive = cut_.nodes[edge.child].primitive)
             fits = fits && sample(number, *primitive, edge.node_from_child,
                                   painted_ ? PointPaint().above(step_from(state, edge)) : PointPaint());
     });
-    for (const CutEdge& edge : followed_edges(node, state.cut)) {
+    for (const DetailEdge& edge : followed_edges(node, state.cut)) {
         if (cut_.nodes[edge.child].primitive) continue;
         work_ += moves_a_relaxation;
         states_[*state_number({edge.child, steps_below(state.key.steps, edge)})].uses.push_back(
@@ -213,17 +213,17 @@ bool PointSystem::start_from(std::uint32_t number, const CoarseStates& coarse) {
     return true;
 }
 
-PointPaint PointSystem::mean_of(const CutNode& node) {
+PointPaint PointSystem::mean_of(const DetailNode& node) {
     return {Paint(node.mean)};
 }
 
-PointPaint PointSystem::ended(const CutNode& node) const {
+PointPaint PointSystem::ended(const DetailNode& node) const {
     if (!node.terminal || node.stop_edges.empty()) return mean_of(node);
-    const CutEdge& edge = node.stop_edges.front();
+    const DetailEdge& edge = node.stop_edges.front();
     return mean_of(cut_.nodes[edge.child]).above(look_step(cut_, node, true, edge));
 }
 
-LookStep PointSystem::step_from(const State& parent, const CutEdge& edge) const {
+LookStep PointSystem::step_from(const State& parent, const DetailEdge& edge) const {
     return look_step(cut_, node_of(parent), parent.cut, edge);
 }
 
@@ -243,12 +243,12 @@ bool PointSystem::add_seed(std::uint32_t number) {
     const State& state = states_[number];
     const double radius = node_of(state).ball.radius;
     Affine node_from_here;
-    std::vector<const CutEdge*> way;
+    std::vector<const DetailEdge*> way;
     NodeId here = state.key.node;
     for (int i = 0; i < most_seed_steps; ++i) {
         if (norm(node_from_here.linear) * cut_.nodes[here].ball.radius <= seed_accuracy * radius) break;
-        const CutEdge* next = nullptr;
-        for (const CutEdge& edge : cut_.nodes[here].edges)
+        const DetailEdge* next = nullptr;
+        for (const DetailEdge& edge : cut_.nodes[here].edges)
             if (!next && cut_.nodes[edge.child].unending) next = &edge;
         if (!next) break;
         ++work_;

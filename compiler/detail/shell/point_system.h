@@ -44,14 +44,14 @@ class PointSystem {
         std::size_t moved = 0; ///< of its points, those that the users have
         struct Use {
             std::uint32_t parent;
-            const CutEdge* edge;
+            const DetailEdge* edge;
         };
         std::vector<Use> uses;
         std::shared_ptr<const InsideGrid> inside;
     };
 
     /// Keeps a reference.
-    PointSystem(const CutGraph& cut, std::size_t most_points, const CancelFlag& cancel = {});
+    PointSystem(const DetailGraph& cut, std::size_t most_points, const CancelFlag& cancel = {});
 
     /// Makes the node's grid of these cells, with `most_work` at most. False if a limit is passed.
     bool run(NodeId root, std::uint32_t steps, double cell, const CoarseStates& coarse,
@@ -70,8 +70,8 @@ class PointSystem {
     CoarseStates take_coarse();
 
   private:
-    const CutNode& node_of(const State& state) const { return cut_.nodes[state.key.node]; }
-    double stretch_of(const CutEdge& edge) const;
+    const DetailNode& node_of(const State& state) const { return cut_.nodes[state.key.node]; }
+    double stretch_of(const DetailEdge& edge) const;
 
     std::optional<std::uint32_t> state_number(PieceKind key);
 
@@ -88,12 +88,12 @@ class PointSystem {
     /// begin outside.
     bool start_from(std::uint32_t number, const CoarseStates& coarse);
 
-    static PointPaint mean_of(const CutNode& node);
+    static PointPaint mean_of(const DetailNode& node);
 
     /// The stand-in where parts end: the terminal, if there is one, by its own material.
-    PointPaint ended(const CutNode& node) const;
+    PointPaint ended(const DetailNode& node) const;
 
-    LookStep step_from(const State& parent, const CutEdge& edge) const;
+    LookStep step_from(const State& parent, const DetailEdge& edge) const;
 
     bool sample(std::uint32_t number, const Primitive& primitive, const Affine& node_from_primitive,
                 const PointPaint& paint);
@@ -113,7 +113,7 @@ class PointSystem {
 
     bool move(const State& child, std::size_t first, std::size_t last, const State::Use& use);
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     std::size_t most_points_;
     std::uint64_t most_work_ = 0; ///< of this run
     bool painted_;

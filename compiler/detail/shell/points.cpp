@@ -53,7 +53,7 @@ bool in_one_plane(const std::vector<Point>& points, double radius) {
 /// Finds the finest grid that the limits allow: from coarse ones to finer ones.
 class GridSearch {
   public:
-    GridSearch(const CutGraph& cut, NodeId node, std::uint32_t steps, const PointLimits& limits)
+    GridSearch(const DetailGraph& cut, NodeId node, std::uint32_t steps, const PointLimits& limits)
         : node_(node), steps_(steps), limits_(limits), most_a_run_(limits.work / runs_paid_for),
           ball_(cut.nodes[node].ball), system_(cut, limits.points, limits.cancel) {}
 
@@ -172,9 +172,9 @@ class GridSearch {
 
 } // namespace
 
-PointSet point_set(const CutGraph& cut, NodeId node, std::uint32_t steps, double detail_per_unit,
+PointSet point_set(const DetailGraph& cut, NodeId node, std::uint32_t steps, double detail_per_unit,
                    const PointLimits& limits) {
-    const CutNode& root = cut.nodes[node];
+    const DetailNode& root = cut.nodes[node];
     if (root.unbounded || root.primitive || !(detail_per_unit > 0) || !std::isfinite(detail_per_unit))
         return {};
     return GridSearch(cut, node, steps, limits).run(1 / detail_per_unit);

@@ -15,7 +15,7 @@ namespace graftal {
 /// for each level, less by the contraction of the levels above. Where the set encloses space, what cannot be
 /// seen from outside is left out. No points if there is no such grid, or if the node is unbounded.
 /// Deterministic.
-PointSet point_set(const CutGraph& cut, NodeId node, std::uint32_t steps, double detail_per_unit,
+PointSet point_set(const DetailGraph& cut, NodeId node, std::uint32_t steps, double detail_per_unit,
                    const PointLimits& limits);
 
 } // namespace graftal

@@ -7,7 +7,7 @@
 
 namespace graftal {
 
-ShellShares::ShellShares(const CutGraph& cut, const std::vector<BakeRequest>& requests) : cut_(cut) {
+ShellShares::ShellShares(const DetailGraph& cut, const std::vector<BakeRequest>& requests) : cut_(cut) {
     for (const BakeRequest& request : requests)
         if (request.shell) cells_left_ += cells(request);
 }

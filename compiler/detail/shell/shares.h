@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "compiler/detail/bake.h"
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 
 namespace graftal {
 
@@ -19,7 +19,7 @@ struct ShellShare {
 class ShellShares {
   public:
     /// Keeps a reference to the graph.
-    ShellShares(const CutGraph& cut, const std::vector<BakeRequest>& requests);
+    ShellShares(const DetailGraph& cut, const std::vector<BakeRequest>& requests);
 
     /// The limits of the shell, where these seconds (work.h) and triangles are left. The rest is for other
     /// work, and a shell may take somewhat more. Requires to be asked once for each shell of the requests.
@@ -28,7 +28,7 @@ class ShellShares {
   private:
     double cells(const BakeRequest& shell) const;
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     double cells_left_ = 0;
 };
 

@@ -305,7 +305,7 @@ class ShellParts {
 };
 
 /// Fills in `baked`, if it can: its shell_work is right on any way out.
-void bake_into(Baked& baked, const CutGraph& cut, const ShellRequest& request, std::size_t max_triangles) {
+void bake_into(Baked& baked, const DetailGraph& cut, const ShellRequest& request, std::size_t max_triangles) {
     const Ball& ball = cut.nodes[request.node].ball;
     const double size = std::exp2(std::ceil(std::log2(std::max(ball.radius, 1e-200))));
     baked.representative_from_body = Affine::translate(ball.centre) * Affine::scale(Vec3(size));
@@ -342,7 +342,7 @@ void bake_into(Baked& baked, const CutGraph& cut, const ShellRequest& request, s
 
 } // namespace
 
-Baked bake_shell(const CutGraph& cut, const ShellRequest& request, std::size_t max_triangles) {
+Baked bake_shell(const DetailGraph& cut, const ShellRequest& request, std::size_t max_triangles) {
     Baked baked;
     try {
         bake_into(baked, cut, request, max_triangles);

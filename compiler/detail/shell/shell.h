@@ -26,6 +26,6 @@ struct ShellRequest {
 /// the faces of the cells that its points (points.h) fill, smoothed by at most half a cell (S. Gibson,
 /// "Constrained Elastic Surface Nets", 1998). A set in the plane z = const becomes a sheet. Its
 /// cells are larger where the limits do not suffice. Not complete where they suffice for none.
-Baked bake_shell(const CutGraph& cut, const ShellRequest& request, std::size_t max_triangles);
+Baked bake_shell(const DetailGraph& cut, const ShellRequest& request, std::size_t max_triangles);
 
 } // namespace graftal

@@ -13,7 +13,7 @@ std::size_t bytes_of(const PointSet& set) {
 
 } // namespace
 
-std::shared_ptr<const PointSet> ShellStore::points(const CutGraph& cut, NodeId node, std::uint32_t steps,
+std::shared_ptr<const PointSet> ShellStore::points(const DetailGraph& cut, NodeId node, std::uint32_t steps,
                                                    double detail_per_unit, const PointLimits& limits) {
     const Key key{node, steps, limits.work, limits.points, 1 / detail_per_unit};
     if (auto set = find(key)) return set;

@@ -22,7 +22,7 @@ class ShellStore {
     explicit ShellStore(std::size_t most_bytes = default_bytes) : most_bytes_(most_bytes) {}
 
     /// point_set() of the node, never null. Requires the same graph each time.
-    std::shared_ptr<const PointSet> points(const CutGraph& cut, NodeId node, std::uint32_t steps,
+    std::shared_ptr<const PointSet> points(const DetailGraph& cut, NodeId node, std::uint32_t steps,
                                            double detail_per_unit, const PointLimits& limits);
 
     /// Number of shells that had to be made.

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <optional>
+#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -38,9 +40,13 @@ Matrix edges_of(const RifsBlock& block) {
         for (std::size_t i = 0; i < count; ++i)
             edges[i][i] = false;
     if (block.follow) {
+        std::map<std::string, std::size_t, std::less<>> places; // the first map of a name has it
+        for (std::size_t i = 0; i < count; ++i)
+            places.try_emplace(name_of(block.maps[i]), i);
         for (const RifsEdge& edge : block.follow->edges) {
-            const auto from = place_of(block, edge.from.text), to = place_of(block, edge.to.text);
-            if (from && to) edges[*from][*to] = kind == Kind::edges;
+            const auto from = places.find(edge.from.text), to = places.find(edge.to.text);
+            if (from != places.end() && to != places.end())
+                edges[from->second][to->second] = kind == Kind::edges;
         }
         for (const RifsCell& cell : block.follow->cells)
             if (cell.row < count && cell.column < count) edges[cell.row][cell.column] = true;
@@ -85,6 +91,14 @@ class FollowText {
         return fmt::format("{} -> {}", name_of(block_.maps[from]), name_of(block_.maps[to]));
     }
 
+    /// The first of this word or symbol in the `follow`, comments aside.
+    std::optional<Span> place_of_word(std::string_view word) const {
+        Diagnostics ignored;
+        for (const Token& token : lex_range(document_.sources(), follow_->span, ignored))
+            if (token.is(word)) return token.span;
+        return std::nullopt;
+    }
+
     /// Behind the last map, or the '}' of its `codes`.
     std::uint32_t end_of_maps() const {
         const RifsMap& last = block_.maps.back();
@@ -103,12 +117,10 @@ class FollowText {
         for (std::size_t i = 0; i < block_.maps.size(); ++i)
             if (!(edge && i == from && from == to)) exceptions.push_back(arrow(i, i));
         if (!edge) exceptions.push_back(arrow(from, to));
-        const std::string_view text = document_.text(follow_->span);
-        const std::size_t self = text.rfind("self");
-        if (self == std::string_view::npos || exceptions.empty()) return std::nullopt;
-        const std::uint32_t begin = follow_->span.begin + static_cast<std::uint32_t>(self);
+        const std::optional<Span> self = place_of_word("self");
+        if (!self || exceptions.empty()) return std::nullopt;
         return std::vector<TextEdit>{
-            {begin, begin + 4, fmt::format("{{ {} }}", fmt::join(exceptions, "  "))}};
+            {self->begin, self->end, fmt::format("{{ {} }}", fmt::join(exceptions, "  "))}};
     }
 
     /// One more edge: behind the others from the same map, or as the last.
@@ -122,11 +134,9 @@ class FollowText {
             const std::uint32_t end = follow_->edges.back().to.span.end;
             return std::vector<TextEdit>{{end, end, "  " + arrow(from, to)}};
         }
-        const std::string_view text = document_.text(follow_->span);
-        const std::size_t open = text.rfind('{'); // an empty list
-        if (open == std::string_view::npos) return std::nullopt;
-        const std::uint32_t place = follow_->span.begin + static_cast<std::uint32_t>(open) + 1;
-        return std::vector<TextEdit>{{place, place, fmt::format(" {} ", arrow(from, to))}};
+        const std::optional<Span> open = place_of_word("{"); // of an empty list
+        if (!open) return std::nullopt;
+        return std::vector<TextEdit>{{open->end, open->end, fmt::format(" {} ", arrow(from, to))}};
     }
 
     /// All mentions of an edge taken out, with what joins them to others.
@@ -139,26 +149,29 @@ class FollowText {
         const auto kept = static_cast<std::size_t>(edges.size() - std::ranges::count_if(edges, is_it));
         const bool braces = document_.text(follow_->span).ends_with("}");
         if (kept == 0 && exceptions) {
-            const std::string_view text = document_.text(follow_->span);
-            const std::size_t except = text.find("except");
-            if (except == std::string_view::npos) return std::nullopt;
-            const std::uint32_t begin = follow_->span.begin + static_cast<std::uint32_t>(except);
-            return std::vector<TextEdit>{{begin, follow_->span.end, ""}};
+            const std::optional<Span> except = place_of_word("except");
+            if (!except) return std::nullopt;
+            return std::vector<TextEdit>{{except->begin, follow_->span.end, ""}};
         }
         if (kept == 0 && !braces) return std::nullopt;
+        Diagnostics ignored;
+        const Span all{0, edges.front().from.span.begin, edges.back().to.span.end};
+        const std::vector<Token> tokens = lex_range(document_.sources(), all, ignored);
         std::vector<TextEdit> out;
         for (std::size_t i = 0; i < edges.size();) {
             std::size_t end = i + 1; // of the edges that stand behind one arrow
             while (end < edges.size() && edges[end].from.span == edges[i].from.span)
                 ++end;
-            take_out(i, end, is_it, out);
+            take_out(i, end, is_it, tokens, out);
             i = end;
         }
         return out;
     }
 
+    /// `tokens`: of all edges.
     template<typename IsIt>
-    void take_out(std::size_t begin, std::size_t end, const IsIt& is_it, std::vector<TextEdit>& out) const {
+    void take_out(std::size_t begin, std::size_t end, const IsIt& is_it, const std::vector<Token>& tokens,
+                  std::vector<TextEdit>& out) const {
         const std::vector<RifsEdge>& edges = follow_->edges;
         std::vector<std::string_view> targets;
         for (std::size_t i = begin; i < end; ++i)
@@ -171,23 +184,37 @@ class FollowText {
         }
         Span span{0, edges[begin].from.span.begin, edges[end - 1].to.span.end};
         const std::string_view text = document_.text();
-        const std::size_t before = text.find_last_not_of(" \t\n", span.begin - 1);
-        const std::size_t behind = text.find_first_not_of(" \t\n", span.end);
-        if (before != std::string_view::npos && text[before] == ',')
-            span.begin = static_cast<std::uint32_t>(before);
-        else if (behind != std::string_view::npos && text[behind] == ',')
-            span.end = static_cast<std::uint32_t>(behind) + 1;
+        const auto begin_of = [](const Token& token) { return token.span.begin; };
+        const auto first = std::ranges::lower_bound(tokens, span.begin, {}, begin_of);
+        const auto behind = std::ranges::lower_bound(first, tokens.end(), span.end, {}, begin_of);
+        const std::uint32_t gone = out.empty() ? 0 : out.back().end; // by the edits so far
+        std::optional<Span> comma;
+        if (first != tokens.begin() && std::prev(first)->is(",") && std::prev(first)->span.begin >= gone)
+            comma = std::prev(first)->span;
+        else if (behind != tokens.end() && behind->is(","))
+            comma = behind->span;
+        const auto blank = [&](std::uint32_t from, std::uint32_t to) {
+            return text.substr(from, to - from).find_first_not_of(" \t\n") == std::string_view::npos;
+        };
+        if (comma && comma->begin < span.begin) {
+            if (blank(comma->end, span.begin))
+                span.begin = comma->begin;
+            else // a comment between them stays
+                out.push_back({comma->begin, comma->end, ""});
+        } else if (comma && blank(span.end, comma->begin)) {
+            span.end = comma->end;
+        }
         // A line of its own: `follow a -> b`.
         const std::string_view ahead = text.substr(0, span.begin);
         const std::size_t word = ahead.find_last_not_of(" \t:");
         const bool alone =
             word != std::string_view::npos && word >= 5 && ahead.substr(word - 5, 6) == "follow";
-        const bool more = behind != std::string_view::npos && begin + 1 < edges.size() &&
-                          end < edges.size() &&
+        const bool more = end < edges.size() &&
                           text.substr(span.end, edges[end].from.span.begin - span.end).find("follow") ==
                               std::string_view::npos;
         if (alone && !more) span.begin = static_cast<std::uint32_t>(word - 5);
         out.push_back({span.begin, span.end, ""});
+        if (comma && comma->begin >= span.end) out.push_back({comma->begin, comma->end, ""});
     }
 
     std::optional<std::vector<TextEdit>> cell(std::size_t from, std::size_t to, bool edge) const {

@@ -31,9 +31,19 @@ bool has_names(const Expression& expression) {
     return std::ranges::any_of(expression.operands, has_names);
 }
 
+/// Whether one pair of brackets holds all of the text.
+bool is_bracketed(std::string_view text) {
+    int depth = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        depth += (text[i] == '(') - (text[i] == ')');
+        if (depth == 0) return text[i] == ')' && i + 1 == text.size();
+    }
+    return false;
+}
+
 /// Whether a constant can stand behind it without brackets.
 bool takes_a_constant(const Expression& expression, std::string_view text) {
-    if (text.starts_with("(") || expression.kind != Expression::Kind::binary) return true;
+    if (is_bracketed(text) || expression.kind != Expression::Kind::binary) return true;
     constexpr std::string_view loose[] = {"==", "!=", "<", "<=", ">", ">=", "&&", "||"};
     return std::ranges::count(loose, expression.text) == 0;
 }
@@ -205,7 +215,10 @@ std::vector<double> MapForm::rounded(const std::vector<double>& values, const Ha
     for (std::size_t i = 0; i < values.size(); ++i) {
         const double change = values[i] - values_[i];
         constexpr double kept = 1e-12;
-        if (std::abs(change) <= kept * std::abs(values_[i])) continue;
+        if (std::abs(change) <= kept * std::abs(values_[i])) {
+            result[i] = values_[i];
+            continue;
+        }
         const auto unseen = [&](double off) {
             std::vector<double> moved = values;
             moved[i] += off;

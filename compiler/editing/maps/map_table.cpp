@@ -28,13 +28,13 @@ std::vector<WrittenMap> maps_in(const RifsFile& tree, const Document& document, 
     const bool several = tree.blocks.size() > 1;
     for (const RifsBlock& block : tree.blocks) {
         const std::string_view block_name = block.name.text;
+        const bool collides =
+            std::ranges::any_of(block.maps, [&](const RifsMap& map) { return map.name.text == block_name; });
         for (const RifsMap& map : block.maps) {
             WrittenMap written;
             const std::string own =
                 map.name.text.empty() ? fmt::format("w{}", map.number) : std::string(map.name.text);
             written.name = several ? fmt::format("{}.{}", block_name, own) : own;
-            const bool collides = std::ranges::any_of(
-                block.maps, [&](const RifsMap& other) { return other.name.text == block_name; });
             written.object = several || collides ? fmt::format("{}.{}", block_name, own) : own;
             if (map.broken)
                 written.why = "its text is at fault";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include "compiler/graph/graph.h"
 #include "compiler/lower/point_maps.h"
 #include "compiler/rifs/system.h"
+#include "compiler/syntax/lexer.h"
 
 namespace graftal {
 
@@ -326,8 +328,8 @@ class Rewriter {
                     std::string list;
                     for (std::size_t k = 0; k < count; ++k)
                         list += (k > 0 ? ", " : "") + number_text(numbers[number + k]);
-                    edits.push_back(
-                        {text_line.numbers.front().span.begin, text_line.numbers.back().span.end, list});
+                    replace({0, text_line.numbers.front().span.begin, text_line.numbers.back().span.end},
+                            std::move(list), edits);
                 } else {
                     for (std::size_t k = 0; k < count; ++k)
                         old[old_number + k] = numbers[number + k];
@@ -340,6 +342,25 @@ class Rewriter {
             edits.push_back(std::move(edit));
         if (!added.empty()) edits.push_back({map_.list_end.begin, map_.list_end.begin, added});
         return edits;
+    }
+
+    /// The text in place of the words of a range, whose comments stay behind it.
+    void replace(Span range, std::string text, std::vector<TextEdit>& edits) const {
+        Diagnostics ignored;
+        std::vector<Span> words; // without a comment between them
+        for (const Token& token : lex_range(document_.sources(), range, ignored)) {
+            if (token.kind == TokenKind::end) break;
+            if (!words.empty() && is_blank(words.back().end, token.span.begin))
+                words.back().end = token.span.end;
+            else
+                words.push_back(token.span);
+        }
+        for (const Span& span : words)
+            edits.push_back({span.begin, span.end, std::exchange(text, {})});
+    }
+
+    bool is_blank(std::uint32_t begin, std::uint32_t end) const {
+        return document_.text({0, begin, end}).find_first_not_of(" \t\r\f\v\n") == std::string_view::npos;
     }
 
     /// One line in place of all; what stands between the others stays.
@@ -361,7 +382,7 @@ class Rewriter {
             const std::string text = text_of(line_of(kind, rounded), colon());
             std::vector<TextEdit> edits;
             for (const TransformLine& line : form_.lines())
-                edits.push_back({line.span.begin, line.span.end, edits.empty() ? text : ""});
+                replace(line.span, edits.empty() ? text : "", edits);
             if (edits.empty()) edits.push_back({map_.list_end.begin, map_.list_end.begin, "  " + text});
             return edits;
         });

@@ -19,7 +19,7 @@ namespace {
 /// The place where the point has to be is met to within this much of the model's size.
 constexpr double arrives = 1e-11;
 /// Steps of an address that count: behind them, a map that halves moves nothing that doubles tell.
-constexpr std::size_t most_steps = 400;
+constexpr std::size_t most_address_steps = 400;
 
 /// One step down: a map whose numbers may change, or one that stays.
 struct Step {
@@ -83,7 +83,7 @@ class Puller {
         ObjectId last = lowered.graph->root;
         const auto take = [&](const std::vector<GraphStep>& steps, std::vector<Step>& into) {
             for (const GraphStep& step : steps) {
-                if (into.size() == most_steps) break;
+                if (into.size() == most_address_steps) break;
                 const Object& object = lowered.graph->objects[step.object];
                 if (step.instance >= object.instances.size()) continue; // of a run: no text has it
                 const Instance& instance = object.instances[step.instance];

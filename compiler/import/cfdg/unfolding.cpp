@@ -27,7 +27,7 @@ constexpr std::uint64_t most_trials = 20; ///< where chance draws nothing
 constexpr int early_generations = 2000;
 constexpr double farthest = 1e50, farthest_late = 1e9; ///< largest places and sizes, and those of others
 /// Most colour steps of all shapes together: each turn of a loop may add one to those before it.
-constexpr std::size_t most_colour_steps = 4'000'000;
+constexpr std::size_t most_unfolded_colour_steps = 4'000'000;
 /// The share of the picture below which Context Free draws no shape: 0.3 pixels of 500.
 constexpr double too_small = 6e-4;
 constexpr double smallest_pixels = 0.3;
@@ -361,11 +361,11 @@ void Unfolding::place(const Element& element, const Surroundings& at, const Unde
     const std::optional<Change> own = shape ? evaluator_.change(element.modification, at) : std::nullopt;
     if (!own) return;
     colour_steps_ += under.change.colours.size();
-    if (colour_steps_ > most_colour_steps)
-        return fail(
-            element.span,
-            fmt::format("the loops of this grammar change colours more than {} times", most_colour_steps),
-            fewer_shapes);
+    if (colour_steps_ > most_unfolded_colour_steps)
+        return fail(element.span,
+                    fmt::format("the loops of this grammar change colours more than {} times",
+                                most_unfolded_colour_steps),
+                    fewer_shapes);
     Change change = under.change;
     change.add(*own);
     const auto found = grammar_.numbers.find(shape->name);

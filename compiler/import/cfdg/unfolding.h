@@ -121,7 +121,7 @@ class Unfolding : private SceneWriter {
     std::priority_queue<std::tuple<int, double, std::size_t>> open_; ///< by turn and size
     Vec3 least_{1e300}, most_{-1e300};                               ///< of what is drawn
     double extent_ = 0;
-    std::size_t lines_ = 0, turns_ = 0, colour_steps_ = 0, written_ = 0;
+    std::size_t lines_ = 0, turns_ = 0, colour_steps_ = 0;
     bool full_ = false, fills_ = false, drawn_ = false;
     bool stretches_ = false; ///< some path depends on how its place stretches
     bool even_ = true;       ///< turns of loops that draw the same may be parts

@@ -21,8 +21,8 @@ class BlockReader {
     BlockReader(std::string_view text, Span span, CpfgNames& names, bool expands = true)
         : text_(text), span_(span), names_(names), expands_(expands) {}
 
-    std::optional<CpfgBlock> read() {
-        CpfgBlock block;
+    std::optional<LSystemBlock> read() {
+        LSystemBlock block;
         while (good_ && !at_end())
             read_statement(block, 0);
         if (!good_) return std::nullopt;
@@ -49,15 +49,15 @@ class BlockReader {
         good_ = false;
     }
 
-    void read_statement(CpfgBlock& block, int depth) {
+    void read_statement(LSystemBlock& block, int depth) {
         if (depth > most_nested_blocks) return fail("blocks are nested too deeply");
         if (at_end()) return;
         if (text_[at_] == '{') return read_braces(block, depth);
         if (accept("if")) {
-            CpfgAction& action = block.emplace_back();
-            action.kind = CpfgAction::Kind::branch;
+            LSystemAction& action = block.emplace_back();
+            action.kind = LSystemAction::Kind::branch;
             action.value = parenthesis();
-            CpfgBlock then, otherwise;
+            LSystemBlock then, otherwise;
             read_statement(then, depth + 1);
             const bool has_otherwise = accept("else");
             if (has_otherwise) read_statement(otherwise, depth + 1);
@@ -65,14 +65,14 @@ class BlockReader {
             action.otherwise = std::move(otherwise);
             action.has_otherwise = has_otherwise;
         } else if (accept("while")) {
-            CpfgAction action;
-            action.kind = CpfgAction::Kind::loop;
+            LSystemAction action;
+            action.kind = LSystemAction::Kind::loop;
             action.value = parenthesis();
             read_statement(action.then, depth + 1);
             block.push_back(std::move(action));
         } else if (accept("do")) {
-            CpfgAction action;
-            action.kind = CpfgAction::Kind::loop_after;
+            LSystemAction action;
+            action.kind = LSystemAction::Kind::loop_after;
             read_statement(action.then, depth + 1);
             if (!accept("while")) return fail("'do' without 'while'");
             action.value = parenthesis();
@@ -82,7 +82,7 @@ class BlockReader {
         }
     }
 
-    void read_braces(CpfgBlock& block, int depth) {
+    void read_braces(LSystemBlock& block, int depth) {
         ++at_;
         while (good_ && !at_end() && text_[at_] != '}')
             read_statement(block, depth + 1);
@@ -116,13 +116,13 @@ class BlockReader {
         return trimmed(text_.substr(begin, at_ - begin));
     }
 
-    void read_macro(std::string_view written, CpfgBlock& block) {
-        const std::optional<CpfgBlock> inner = BlockReader(written, span_, names_, false).read();
+    void read_macro(std::string_view written, LSystemBlock& block) {
+        const std::optional<LSystemBlock> inner = BlockReader(written, span_, names_, false).read();
         good_ = good_ && inner.has_value();
         if (inner) block.insert(block.end(), inner->begin(), inner->end());
     }
 
-    void read_simple(CpfgBlock& block) {
+    void read_simple(LSystemBlock& block) {
         const std::string name(word());
         const std::string_view text = simple_text();
         if (text.empty()) {
@@ -150,7 +150,7 @@ class BlockReader {
                                     name.empty() ? comment_text(text.substr(0, 20)) : name));
         const std::string_view value = trimmed(text.substr(equal + 1));
         if (value.starts_with("fopen")) return names_.warn_once(span_, "what the model prints is left out");
-        CpfgAction action;
+        LSystemAction action;
         action.name = names_.own_name(name);
         const std::string_view target = trimmed(text.substr(0, equal));
         action.target = target == name ? action.name : names_.expression(target, span_);
@@ -166,28 +166,28 @@ class BlockReader {
     bool good_ = true;
 };
 
-void write(const CpfgBlock& block, std::string& out) {
+void write(const LSystemBlock& block, std::string& out) {
     out += "{";
     bool ends = false; // a brace ends a statement by itself
-    for (const CpfgAction& action : block) {
+    for (const LSystemAction& action : block) {
         out += out.ends_with("{") || ends ? " " : "; ";
-        ends = action.kind == CpfgAction::Kind::branch || action.kind == CpfgAction::Kind::loop;
+        ends = action.kind == LSystemAction::Kind::branch || action.kind == LSystemAction::Kind::loop;
         switch (action.kind) {
-        case CpfgAction::Kind::assign:
+        case LSystemAction::Kind::assign:
             out += fmt::format("{} = {}", action.target, action.value);
             break;
-        case CpfgAction::Kind::branch:
+        case LSystemAction::Kind::branch:
             out += fmt::format("if ({}) ", action.value);
             write(action.then, out);
             if (!action.has_otherwise) break;
             out += " else ";
             write(action.otherwise, out);
             break;
-        case CpfgAction::Kind::loop:
+        case LSystemAction::Kind::loop:
             out += fmt::format("while ({}) ", action.value);
             write(action.then, out);
             break;
-        case CpfgAction::Kind::loop_after:
+        case LSystemAction::Kind::loop_after:
             out += "do ";
             write(action.then, out);
             out += fmt::format(" while ({})", action.value);
@@ -197,10 +197,10 @@ void write(const CpfgBlock& block, std::string& out) {
     out += out.ends_with("{") ? "}" : " }";
 }
 
-void each_assignment(const CpfgBlock& block, bool always,
-                     const std::function<void(const CpfgAction&, bool)>& take) {
-    for (const CpfgAction& action : block) {
-        if (action.kind == CpfgAction::Kind::assign) take(action, always);
+void each_assignment(const LSystemBlock& block, bool always,
+                     const std::function<void(const LSystemAction&, bool)>& take) {
+    for (const LSystemAction& action : block) {
+        if (action.kind == LSystemAction::Kind::assign) take(action, always);
         each_assignment(action.then, false, take);
         each_assignment(action.otherwise, false, take);
     }
@@ -208,17 +208,17 @@ void each_assignment(const CpfgBlock& block, bool always,
 
 } // namespace
 
-std::optional<CpfgBlock> read_cpfg_block(std::string_view text, Span span, CpfgNames& names) {
+std::optional<LSystemBlock> read_cpfg_block(std::string_view text, Span span, CpfgNames& names) {
     return BlockReader(text, span, names).read();
 }
 
-std::string cpfg_block_text(const CpfgBlock& block) {
+std::string cpfg_block_text(const LSystemBlock& block) {
     std::string out;
     write(block, out);
     return out;
 }
 
-void each_assignment(const CpfgBlock& block, const std::function<void(const CpfgAction&, bool)>& take) {
+void each_assignment(const LSystemBlock& block, const std::function<void(const LSystemAction&, bool)>& take) {
     each_assignment(block, true, take);
 }
 

@@ -73,7 +73,7 @@ std::optional<Translation> translate_cpfg(const ForeignFile& file, const Foreign
     const CpfgCompanions companions = find_cpfg_companions(file);
     const CpfgView view = read_cpfg_view(file, companions.view);
     CpfgNames names(file, *source, view);
-    std::optional<CpfgSystem> system = read_cpfg_system(names);
+    std::optional<LSystem> system = read_cpfg_system(names);
     if (!system) return std::nullopt;
     return write_cpfg_system(names, std::move(*system), model, companions.environment);
 }

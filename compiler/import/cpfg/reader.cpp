@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/cpfg/block.h"
 #include "compiler/import/cpfg/expression.h"
 #include "compiler/import/cpfg/string.h"
 #include "compiler/import/foreign_text.h"
@@ -21,37 +22,37 @@ namespace graftal {
 
 namespace {
 
-bool is_letter(const CpfgModule& module) {
+bool is_letter(const LSystemModule& module) {
     return module.symbol.size() == 1 && std::isalnum(static_cast<unsigned char>(module.symbol[0]));
 }
 
-bool alike(const CpfgModule& a, const CpfgModule& b) {
+bool alike(const LSystemModule& a, const LSystemModule& b) {
     return a.symbol == b.symbol && a.parameters.size() == b.parameters.size();
 }
 
 /// Several letters, of which the last may have parameters.
-bool is_name(const CpfgString& string) {
+bool is_name(const LSystemString& string) {
     return string.size() > 1 && std::ranges::all_of(string, is_letter) &&
            std::all_of(string.begin(), string.end() - 1,
-                       [](const CpfgModule& module) { return module.parameters.empty(); });
+                       [](const LSystemModule& module) { return module.parameters.empty(); });
 }
 
-bool begins_with(const CpfgString& string, std::size_t at, const CpfgString& name) {
+bool begins_with(const LSystemString& string, std::size_t at, const LSystemString& name) {
     return at + name.size() <= string.size() &&
            std::equal(name.begin(), name.end(), string.begin() + static_cast<std::ptrdiff_t>(at), alike);
 }
 
-void each_string(CpfgSystem& system, const std::function<void(CpfgString&)>& take) {
+void each_string(LSystem& system, const std::function<void(LSystemString&)>& take) {
     take(system.axiom);
     for (auto& [section, productions] : system.productions)
-        for (CpfgProduction& production : productions)
-            for (CpfgString* string :
+        for (LSystemProduction& production : productions)
+            for (LSystemString* string :
                  {&production.left, &production.predecessor, &production.right, &production.successor})
                 take(*string);
 }
 
-CpfgModule joined(const CpfgString& string, std::size_t at, std::size_t count) {
-    CpfgModule module = string[at + count - 1];
+LSystemModule joined(const LSystemString& string, std::size_t at, std::size_t count) {
+    LSystemModule module = string[at + count - 1];
     module.symbol.clear();
     for (std::size_t i = 0; i < count; ++i)
         module.symbol += string[at + i].symbol;
@@ -63,42 +64,42 @@ CpfgModule joined(const CpfgString& string, std::size_t at, std::size_t count) {
 /// becomes a module of that name.
 class NameJoiner {
   public:
-    explicit NameJoiner(CpfgSystem& system) : system_(system) {
+    explicit NameJoiner(LSystem& system) : system_(system) {
         for (auto& [section, productions] : system.productions)
-            for (const CpfgProduction& production : productions) {
+            for (const LSystemProduction& production : productions) {
                 if (production.predecessor.size() == 1)
                     rewritten_.insert(
                         {production.predecessor[0].symbol, production.predecessor[0].parameters.size()});
-                if (section != CpfgSection::productions && is_name(production.predecessor) &&
+                if (section != LSystemSection::productions && is_name(production.predecessor) &&
                     !knows(production.predecessor))
                     names_.push_back(production.predecessor);
             }
-        std::ranges::stable_sort(names_, std::greater<>(), &CpfgString::size);
+        std::ranges::stable_sort(names_, std::greater<>(), &LSystemString::size);
     }
 
     void join() {
         // A letter that stands nowhere else keeps the sequence of its name from coming about by chance.
-        each_string(system_, [&](CpfgString& string) { note_letters(string); });
-        std::erase_if(names_, [&](const CpfgString& name) { return !is_closed(name); });
+        each_string(system_, [&](LSystemString& string) { note_letters(string); });
+        std::erase_if(names_, [&](const LSystemString& name) { return !is_closed(name); });
         if (names_.empty()) return;
-        each_string(system_, [&](CpfgString& string) { join(string); });
+        each_string(system_, [&](LSystemString& string) { join(string); });
     }
 
   private:
-    bool knows(const CpfgString& name) const {
-        return std::ranges::any_of(names_, [&](const CpfgString& known) {
+    bool knows(const LSystemString& name) const {
+        return std::ranges::any_of(names_, [&](const LSystemString& known) {
             return known.size() == name.size() && begins_with(known, 0, name);
         });
     }
 
     /// Number of modules of the name that begins here; 0 if none does.
-    std::size_t name_at(const CpfgString& string, std::size_t at) const {
-        for (const CpfgString& name : names_)
+    std::size_t name_at(const LSystemString& string, std::size_t at) const {
+        for (const LSystemString& name : names_)
             if (begins_with(string, at, name)) return name.size();
         return 0;
     }
 
-    void note_letters(const CpfgString& string) {
+    void note_letters(const LSystemString& string) {
         for (std::size_t i = 0; i < string.size();) {
             const std::size_t count = name_at(string, i);
             if (count == 0) single_.insert({string[i].symbol, string[i].parameters.size()});
@@ -106,21 +107,21 @@ class NameJoiner {
         }
     }
 
-    bool is_closed(const CpfgString& name) const {
+    bool is_closed(const LSystemString& name) const {
         // Read from the left, a name is rewritten as a whole before what is in it.
         const bool falls_apart = rewritten_.contains({name[0].symbol, name[0].parameters.size()}) ||
                                  !name.back().parameters.empty();
-        if (falls_apart && std::ranges::any_of(name, [&](const CpfgModule& module) {
+        if (falls_apart && std::ranges::any_of(name, [&](const LSystemModule& module) {
                 return rewritten_.contains({module.symbol, module.parameters.size()});
             }))
             return false;
-        return std::ranges::any_of(name, [&](const CpfgModule& module) {
+        return std::ranges::any_of(name, [&](const LSystemModule& module) {
             return !single_.contains({module.symbol, module.parameters.size()});
         });
     }
 
-    void join(CpfgString& string) const {
-        CpfgString result;
+    void join(LSystemString& string) const {
+        LSystemString result;
         for (std::size_t i = 0; i < string.size();) {
             const std::size_t count = name_at(string, i);
             result.push_back(count == 0 ? string[i] : joined(string, i, count));
@@ -129,8 +130,8 @@ class NameJoiner {
         string = std::move(result);
     }
 
-    CpfgSystem& system_;
-    std::vector<CpfgString> names_;                                    ///< the longest first
+    LSystem& system_;
+    std::vector<LSystemString> names_;                                 ///< the longest first
     std::set<std::pair<std::string, std::size_t>> single_, rewritten_; ///< modules beside and in names
 };
 
@@ -138,7 +139,7 @@ class SystemReader {
   public:
     explicit SystemReader(CpfgNames& names) : names_(names) {}
 
-    std::optional<CpfgSystem> read() {
+    std::optional<LSystem> read() {
         Diagnostics& diagnostics = names_.file().diagnostics;
         const std::size_t errors = diagnostics.error_count();
         for (const CpfgStatement& statement : names_.source().statements) {
@@ -172,10 +173,9 @@ class SystemReader {
                 ended_ = true;
             }
             system_.head_comments = statement.comments;
-        } else if (is("seed:") && section_ == CpfgSection::productions) {
+        } else if (is("seed:") && section_ == LSystemSection::productions) {
             system_.seed = names_.expression(value(), span);
             system_.seed_span = span;
-            system_.stochastic = true;
         } else if (is("seed:")) {
             names_.warn_once(span, "a seed of the homomorphism is left out: one seed decides all");
         } else if (is("derivation length:") || is("derivationlength:")) {
@@ -198,9 +198,9 @@ class SystemReader {
         } else if (is("ring ")) {
             names_.error(span, "a ring L-system has no translation");
         } else if (is("homomorphism")) {
-            section_ = CpfgSection::homomorphism;
+            section_ = LSystemSection::homomorphism;
         } else if (is("decomposition")) {
-            section_ = CpfgSection::decomposition;
+            section_ = LSystemSection::decomposition;
         } else if (is("endlsystem")) {
             ended_ = false;
         } else if (statement.text.find("-->") != std::string::npos) {
@@ -212,20 +212,20 @@ class SystemReader {
         }
     }
 
-    static std::optional<CpfgMoment> moment_of(std::string_view small) {
-        constexpr std::pair<std::string_view, CpfgMoment> words[] = {
-            {"start:", CpfgMoment::start},           {"starteach:", CpfgMoment::start_each},
-            {"start each:", CpfgMoment::start_each}, {"endeach:", CpfgMoment::end_each},
-            {"end each:", CpfgMoment::end_each},     {"end:", CpfgMoment::end}};
+    static std::optional<LSystemMoment> moment_of(std::string_view small) {
+        constexpr std::pair<std::string_view, LSystemMoment> words[] = {
+            {"start:", LSystemMoment::start},           {"starteach:", LSystemMoment::start_each},
+            {"start each:", LSystemMoment::start_each}, {"endeach:", LSystemMoment::end_each},
+            {"end each:", LSystemMoment::end_each},     {"end:", LSystemMoment::end}};
         for (const auto& [word, moment] : words)
             if (small.starts_with(word)) return moment;
         return std::nullopt;
     }
 
-    void take_block(CpfgMoment moment, std::string_view text, Span span) {
-        std::optional<CpfgBlock> block = read_cpfg_block(text, span, names_);
+    void take_block(LSystemMoment moment, std::string_view text, Span span) {
+        std::optional<LSystemBlock> block = read_cpfg_block(text, span, names_);
         if (!block) return;
-        CpfgBlock& known = system_.blocks[moment];
+        LSystemBlock& known = system_.blocks[moment];
         known.insert(known.end(), block->begin(), block->end());
         system_.block_spans.try_emplace(moment, span);
     }
@@ -259,7 +259,7 @@ class SystemReader {
     }
 
     void take_array(std::string_view text, Span span) {
-        CpfgArray array;
+        LSystemArray array;
         array.span = span;
         const std::size_t equal = std::min(text.find('='), text.size());
         const std::string_view head = trimmed(text.substr(0, equal));
@@ -283,7 +283,7 @@ class SystemReader {
     }
 
     void add_production(const CpfgStatement& statement, Span span) {
-        CpfgProduction production;
+        LSystemProduction production;
         production.span = span;
         production.comments = statement.comments;
         const std::string_view text = trimmed(statement.text);
@@ -296,7 +296,7 @@ class SystemReader {
         if (trimmed(tail.substr(0, chance)) != "*")
             production.successor = read_cpfg_string(tail.substr(0, chance), names_, span);
         if (chance != std::string_view::npos) {
-            if (system_.stochastic)
+            if (system_.seed_span.known())
                 production.probability = names_.expression(tail.substr(chance + 1), span);
             else
                 names_.warn_once(
@@ -305,17 +305,15 @@ class SystemReader {
         system_.productions[section_].push_back(std::move(production));
     }
 
-    void read_left_side(std::string_view text, CpfgProduction& production) {
+    void read_left_side(std::string_view text, LSystemProduction& production) {
         const std::size_t less = find_outside(text, "<");
         if (less != std::string_view::npos) {
-            production.has_left = true;
             if (trimmed(text.substr(0, less)) != "*")
                 production.left = read_cpfg_string(text.substr(0, less), names_, production.span);
             text.remove_prefix(less + 1);
         }
         const std::size_t more = find_outside(text, ">");
         if (more != std::string_view::npos) {
-            production.has_right = true;
             const std::string_view right = trimmed(text.substr(more + 1));
             if (right != "*") production.right = read_cpfg_string(right, names_, production.span);
         }
@@ -327,7 +325,7 @@ class SystemReader {
 
     /// `=` says that the branch may go on, which is so without it in ours; where a branch has to end, ours
     /// cannot say so.
-    void check_right(CpfgProduction& production) {
+    void check_right(LSystemProduction& production) {
         int depth = 0;
         bool leaves = false, ends = false;
         for (std::size_t i = 0; i < production.right.size(); ++i) {
@@ -336,8 +334,8 @@ class SystemReader {
             leaves = leaves || depth < 0;
             ends = ends || (symbol == "]" && i > 0 && production.right[i - 1].symbol != "=");
         }
-        std::erase_if(production.right, [](const CpfgModule& module) { return module.symbol == "="; });
-        if (section_ == CpfgSection::homomorphism) {
+        std::erase_if(production.right, [](const LSystemModule& module) { return module.symbol == "="; });
+        if (section_ == LSystemSection::homomorphism) {
             if (!production.left.empty() || !production.right.empty())
                 names_.warn_once(production.span, "contexts of the homomorphism are left out, as in cpfg");
             production.left = production.right = {};
@@ -351,7 +349,7 @@ class SystemReader {
     }
 
     /// `{ before } condition { after }`
-    bool read_condition(std::string_view text, CpfgProduction& production) {
+    bool read_condition(std::string_view text, LSystemProduction& production) {
         text = trimmed(text);
         if (text.starts_with('{')) {
             const std::size_t end = end_of_braces(text);
@@ -374,23 +372,23 @@ class SystemReader {
         return end;
     }
 
-    bool read_block(std::string_view text, Span span, CpfgBlock& block) {
-        std::optional<CpfgBlock> known = read_cpfg_block(text, span, names_);
+    bool read_block(std::string_view text, Span span, LSystemBlock& block) {
+        std::optional<LSystemBlock> known = read_cpfg_block(text, span, names_);
         if (!known) return false;
         block = std::move(*known);
         return true;
     }
 
     CpfgNames& names_;
-    CpfgSystem system_;
+    LSystem system_;
     int systems_ = 0;
     bool ended_ = false;
-    CpfgSection section_ = CpfgSection::productions;
+    LSystemSection section_ = LSystemSection::productions;
 };
 
 } // namespace
 
-std::optional<CpfgSystem> read_cpfg_system(CpfgNames& names) {
+std::optional<LSystem> read_cpfg_system(CpfgNames& names) {
     return SystemReader(names).read();
 }
 

@@ -46,7 +46,8 @@ void skip_blanks(std::string_view text, std::size_t& i) {
     if (next < text.size() && text[next] == '(') i = next;
 }
 
-void take_parameters(std::string_view text, std::size_t& i, CpfgModule& module, CpfgNames& names, Span span) {
+void take_parameters(std::string_view text, std::size_t& i, LSystemModule& module, CpfgNames& names,
+                     Span span) {
     if (i >= text.size() || text[i] != '(') return;
     module.has_parentheses = true;
     const std::size_t begin = i + 1, end = end_of_parentheses(text, i);
@@ -61,16 +62,16 @@ void take_parameters(std::string_view text, std::size_t& i, CpfgModule& module, 
 
 } // namespace
 
-CpfgString read_cpfg_string(std::string_view given, CpfgNames& names, Span span) {
+LSystemString read_cpfg_string(std::string_view given, CpfgNames& names, Span span) {
     const std::string text = expanded_string(given, names, span);
-    CpfgString string;
+    LSystemString string;
     for (std::size_t i = 0; i < text.size();) {
         const char c = text[i];
         if (c == ' ' || c == '\t') {
             ++i;
             continue;
         }
-        CpfgModule module;
+        LSystemModule module;
         module.symbol = c;
         ++i;
         // Blanks do not count.

@@ -3,11 +3,11 @@
 #include <string_view>
 
 #include "compiler/import/cpfg/names.h"
-#include "compiler/import/cpfg/system.h"
+#include "compiler/import/l_system.h"
 
 namespace graftal {
 
 /// The modules of a string, after its macros.
-CpfgString read_cpfg_string(std::string_view given, CpfgNames& names, Span span);
+LSystemString read_cpfg_string(std::string_view given, CpfgNames& names, Span span);
 
 } // namespace graftal

@@ -88,7 +88,6 @@ class Writer {
         std::optional<double> reflection, ambient, diffuse, specular;
     };
     std::map<std::string, Finish> finishes_; ///< by class; "" is the plain one
-    std::set<std::string> classes_;
 };
 
 } // namespace graftal::eisenscript

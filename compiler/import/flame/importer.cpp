@@ -16,7 +16,6 @@
 #include "compiler/import/spectral_radius.h"
 #include "compiler/support/angle.h"
 #include "compiler/support/number.h"
-#include "compiler/support/srgb.h"
 
 namespace graftal {
 
@@ -31,9 +30,10 @@ std::vector<ForeignModel> models(const ForeignFile& file) {
     for (const pugi::xml_node& flame : flames_of(*document)) {
         std::string name = comment_text(flame.attribute("name").value());
         if (name.empty()) name = fmt::format("flame{}", found.size() + 1);
-        if (!names.insert(name).second) name = fmt::format("{}_{}", name, found.size() + 1);
-        names.insert(name);
-        found.push_back({name, reader.span(flame)});
+        std::string free = name;
+        for (std::size_t i = found.size() + 1; !names.insert(free).second; ++i)
+            free = fmt::format("{}_{}", name, i);
+        found.push_back({free, reader.span(flame)});
     }
     return found;
 }
@@ -43,7 +43,7 @@ std::vector<ForeignModel> models(const ForeignFile& file) {
 class Writer {
   public:
     Writer(const ForeignFile& file, const ForeignModel& model, Flame flame)
-        : file_(file), name_(own_name(model.name)), flame_(std::move(flame)) {
+        : file_(file), name_(own_name(model.name, "_flame")), flame_(std::move(flame)) {
         add_symmetry();
         fill_palette();
         out_.line(comment(model.name + ", a flame"));
@@ -71,11 +71,6 @@ class Writer {
 
   private:
     static std::string comment(const std::string& words) { return "# " + comment_text(words); }
-    static std::string own_name(const std::string& name) {
-        const std::string plain = plain_name(name);
-        return is_own_word(plain) ? plain + "_flame" : plain;
-    }
-    static std::string number(double value) { return shortest(value); }
 
     void add_symmetry() {
         if (flame_.symmetry == 1 || flame_.symmetry == 0) return;
@@ -143,22 +138,19 @@ class Writer {
         if (!has_palette_ || map.speed == 0) return "";
         const std::array<double, 3>& rgb =
             flame_.palette[static_cast<std::size_t>(std::lround(255 * map.colour))];
-        const auto linear = [](double v) { return number(linear_from_srgb(v)); };
-        return fmt::format("  tint rgb <{}, {}, {}> {}", linear(rgb[0]), linear(rgb[1]), linear(rgb[2]),
-                           number(map.speed));
+        return fmt::format("  tint rgb <{}> {}", linear_text(rgb), shortest(map.speed));
     }
 
     void write_camera() {
-        const std::array<double, 3>& b = flame_.background;
-        out_.line(fmt::format("background: {}, {}, {}", number(linear_from_srgb(b[0])),
-                              number(linear_from_srgb(b[1])), number(linear_from_srgb(b[2]))));
+        out_.line("background: " + linear_text(flame_.background));
         if (!flame_.centre || !(flame_.scale > 0) || !(flame_.width > 0)) return;
         const double x = (*flame_.centre)[0], y = (*flame_.centre)[1];
         const auto [cosine, sine] = cos_sin_deg(flame_.rotate);
         out_.line(fmt::format(
             "camera {{ orthographic  location: {0},{1},-10  look_at: {0},{1},0  up: {3},{4},0  width: {2} }}"
             "   # y points downwards",
-            number(x), number(y), number(flame_.width / flame_.scale), number(-sine), number(-cosine)));
+            shortest(x), shortest(y), shortest(flame_.width / flame_.scale), shortest(-sine),
+            shortest(-cosine)));
     }
 
     void write_maps() {
@@ -168,10 +160,10 @@ class Writer {
         out_.line("  codes 2d {");
         for (const Map& map : flame_.maps) {
             const Affine whole = map.whole();
-            out_.line(fmt::format("    {} {} {} {}  {} {}  {}{}{}", number(whole.linear[0][0]),
-                                  number(whole.linear[1][0]), number(whole.linear[0][1]),
-                                  number(whole.linear[1][1]), number(whole.translation.x),
-                                  number(whole.translation.y), number(map.weight), tint(map),
+            out_.line(fmt::format("    {} {} {} {}  {} {}  {}{}{}", shortest(whole.linear[0][0]),
+                                  shortest(whole.linear[1][0]), shortest(whole.linear[0][1]),
+                                  shortest(whole.linear[1][1]), shortest(whole.translation.x),
+                                  shortest(whole.translation.y), shortest(map.weight), tint(map),
                                   map.name.empty() ? "" : "   " + comment(map.name)),
                       map.span);
         }
@@ -183,9 +175,10 @@ class Writer {
         out_.line(fmt::format("main rifs {}_final {{", name_));
         out_.line(
             fmt::format("  map final from {} {{ matrix {}, {}, 0, {},  {}, {}, 0, {},  0, 0, {}, 0{} }}",
-                        name_, number(whole.linear[0][0]), number(whole.linear[1][0]),
-                        number(whole.translation.x), number(whole.linear[0][1]), number(whole.linear[1][1]),
-                        number(whole.translation.y), number(whole.linear[2][2]), tint(*flame_.last)),
+                        name_, shortest(whole.linear[0][0]), shortest(whole.linear[1][0]),
+                        shortest(whole.translation.x), shortest(whole.linear[0][1]),
+                        shortest(whole.linear[1][1]), shortest(whole.translation.y),
+                        shortest(whole.linear[2][2]), tint(*flame_.last)),
             flame_.last->span);
         out_.line("}");
     }
@@ -200,7 +193,7 @@ class Writer {
                 sum += chaos(i, j);
             std::string row = "   ";
             for (std::size_t j = 0; j < flame_.maps.size(); ++j)
-                row += " " + number(sum > 0 ? chaos(i, j) / sum : 0);
+                row += " " + shortest(sum > 0 ? chaos(i, j) / sum : 0);
             out_.line(row, flame_.maps[i].span);
         }
         out_.line("  }");
@@ -233,7 +226,7 @@ class Writer {
             std::string row = "   ";
             for (std::size_t j = 0; j < branches.size(); ++j)
                 for (std::size_t branch = 0; branch < branches[j]; ++branch)
-                    row += " " + number(chaos(i, j));
+                    row += " " + shortest(chaos(i, j));
             for (std::size_t branch = 0; branch < branches[i]; ++branch)
                 out_.line(row, flame_.maps[i].span);
         }
@@ -293,7 +286,7 @@ class Writer {
         std::string sum;
         for (const Term& term : way)
             if (term.first == first)
-                sum += fmt::format("{}({}) * ({})", sum.empty() ? "" : " + ", number(term.weight),
+                sum += fmt::format("{}({}) * ({})", sum.empty() ? "" : " + ", shortest(term.weight),
                                    term.formula.*axis);
         return sum;
     }
@@ -304,8 +297,8 @@ class Writer {
             if (!term.formula.draws.empty()) out_.line("    let " + term.formula.draws);
         const auto before = [&](std::size_t axis, double translation, std::string Formula::*formula) {
             const std::string moved = sum_of(way, true, formula);
-            return fmt::format("({}) * x + ({}) * y + ({}){}", number(map.pre.linear[0][axis]),
-                               number(map.pre.linear[1][axis]), number(translation),
+            return fmt::format("({}) * x + ({}) * y + ({}){}", shortest(map.pre.linear[0][axis]),
+                               shortest(map.pre.linear[1][axis]), shortest(translation),
                                moved.empty() ? "" : " + " + moved);
         };
         out_.line("    let u = " + before(0, map.pre.translation.x, &Formula::x));
@@ -326,8 +319,8 @@ class Writer {
     void write_image(const Affine& post) {
         const auto after = [&](std::size_t axis, double translation, const char* unmoved) {
             if (post == Affine()) return std::string(unmoved);
-            return fmt::format("({}) * p + ({}) * q + ({})", number(post.linear[0][axis]),
-                               number(post.linear[1][axis]), number(translation));
+            return fmt::format("({}) * p + ({}) * q + ({})", shortest(post.linear[0][axis]),
+                               shortest(post.linear[1][axis]), shortest(translation));
         };
         out_.line("    x = " + after(0, post.translation.x, "p"));
         out_.line("    y = " + after(1, post.translation.y, "q"));
@@ -341,7 +334,7 @@ class Writer {
             write_way(map, way);
             write_image(map.post);
             out_.line(fmt::format("    probability {}{}",
-                                  number(map.weight / static_cast<double>(ways.size())), tint(map)));
+                                  shortest(map.weight / static_cast<double>(ways.size())), tint(map)));
             out_.line("  }");
         }
         branches.push_back(ways.size());

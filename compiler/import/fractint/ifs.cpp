@@ -354,8 +354,7 @@ class Writer {
     }
 
     void write_maps() {
-        const std::string name = plain_name(model_.name);
-        out_.line(fmt::format("rifs {} {{", is_own_word(name) ? name + "_ifs" : name), model_.span);
+        out_.line(fmt::format("rifs {} {{", own_name(model_.name, "_ifs")), model_.span);
         out_.line(fmt::format("  codes {} {{", system_.in_space ? "3d" : "2d"));
         for (std::size_t i = 0; i < system_.rows.size(); ++i) {
             const Row& row = system_.rows[i];

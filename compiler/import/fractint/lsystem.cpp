@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -85,9 +86,9 @@ std::optional<Translation> translate_fractint(const ForeignFile& file, const For
                                fmt::format("a model has more than {} characters", most_bytes));
         return std::nullopt;
     }
-    const std::optional<FractintSystem> system = read_fractint_system(file, model);
+    std::optional<FractintSystem> system = read_fractint_system(file, model);
     if (!system) return std::nullopt;
-    return write_fractint_system(file, model, *system);
+    return write_fractint_system(file, model, *std::move(system));
 }
 
 constexpr std::string_view fractint_lsystem_endings[] = {"l"};

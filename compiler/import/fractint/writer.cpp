@@ -1,16 +1,18 @@
 #include "compiler/import/fractint/system.h"
 
-#include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "compiler/import/cpfg/dialect.h"
+#include "compiler/import/cpfg/write/writer.h"
 #include "compiler/import/foreign_text.h"
-#include "compiler/support/small_letters.h"
 
 namespace graftal {
 
@@ -35,225 +37,121 @@ std::string ega_colour(std::size_t number) {
     return fmt::format("{}, {}, {}", part(4), number == 6 ? 0.09 : part(2), part(1));
 }
 
-class FractintWriter {
-  public:
-    FractintWriter(const ForeignFile& file, const ForeignModel& model, const FractintSystem& system)
-        : file_(file), model_(model), system_(system) {}
+/// The largest order that draws few lines, and how many. Counts symbols, order by order.
+std::pair<int, double> steps_to_draw(const LSystem& system) {
+    using Counts = std::array<double, 256>; // by symbols
+    const auto at = [](const LSystemModule& module) { return static_cast<unsigned char>(module.symbol[0]); };
+    const auto count = [&](const LSystemString& string, double times, Counts& into) {
+        for (const LSystemModule& module : string)
+            into[at(module)] += times;
+    };
+    const auto lines = [](const Counts& of) { return of['F'] + of['D']; };
+    const std::vector<LSystemProduction>& productions = system.productions.at(LSystemSection::productions);
+    Counts counts{};
+    count(system.axiom, 1, counts);
+    int steps = 0;
+    double drawn = lines(counts), all = 0;
+    for (int next = 1; next <= most_steps; ++next) {
+        Counts after = counts;
+        for (const LSystemProduction& production : productions)
+            after[at(production.predecessor[0])] = 0;
+        for (const LSystemProduction& production : productions)
+            count(production.successor, counts[at(production.predecessor[0])], after);
+        all = 0;
+        for (const double number : after)
+            all += number;
+        if (next > 2 && (lines(after) > most_lines || all > 100 * most_lines)) break;
+        counts = after;
+        steps = next;
+        drawn = lines(counts);
+    }
+    return {steps, drawn};
+}
 
-    Translation write() {
-        gather();
-        Translation out{"lsys", {}, {}};
-        out.line(fmt::format("# {}: an L-system of Fractint", comment_text(model_.name)), model_.span);
-        for (const auto& [remark, span] : system_.remarks)
-            out.line("# " + remark, span);
-        if (uses("c<>")) {
-            out.line("background: 0, 0, 0");
-            for (std::size_t i = 0; i < ega_names.size(); ++i)
-                out.line(fmt::format("material {} {{ color: {}  ambient: 1  diffuse: 0 }}", ega_names[i],
-                                     ega_colour(i)));
+class FractintTurtle {
+  public:
+    /// `fractint` must outlive this.
+    explicit FractintTurtle(const FractintSystem& fractint)
+        : angle_(fractint.angle),
+          two_headings_(uses_any(fractint.system, "DM\\/") && uses_any(fractint.system, "FG+-|")) {}
+
+    bool two_headings() const { return two_headings_; }
+
+    std::string same(const std::string& symbol) const {
+        if (symbol == "G") return "f";
+        if (symbol == "D") return two_headings_ ? "D" : "F";
+        if (symbol == "M") return two_headings_ ? "M" : "f";
+        return std::string_view("F+-[]").find(symbol) != std::string_view::npos ? symbol : std::string();
+    }
+
+    std::optional<std::string> told(const LSystemModule& module) const {
+        const std::string number = module.parameters.empty() ? "" : module.parameters[0];
+        switch (module.symbol[0]) {
+        case '\\':
+            return turn('+', number);
+        case '/':
+            return turn('-', number);
+        case '|': // the largest turn of at most 180 degrees; Fractint turns it to the right, reversed or not
+            return angle_ % 2 == 0 ? "|" : fmt::format("-({}*360/{})", angle_ / 2, angle_);
+        case '!':
+            return "@F";
+        case '@':
+            return fmt::format("@S({})", number);
+        case 'C':
+            return fmt::format(";({})", number);
+        case '<':
+            return std::string(std::stoul(number), ';');
+        case '>':
+            return std::string(std::stoul(number), ',');
+        default:
+            return std::nullopt;
         }
-        out.line(fmt::format("lsys {} {{", block_name(model_.name)), model_.span);
-        if (const std::string names = declared(); !names.empty()) out.line("  modules " + names);
-        if (uses("c<>")) out.line(fmt::format("  colors {}", fmt::join(ega_names, ", ")));
-        out.line(fmt::format("  angle 360/{}{}", system_.angle, remark_text(system_.angle_comment)),
-                 system_.angle_span);
-        const auto [steps, lines] = steps_to_draw();
-        out.line(fmt::format(
-            "  steps {}{}", steps,
-            remark_text(fmt::format("Fractint's order; with this it draws {:.0f} lines", lines))));
-        out.line(fmt::format("  axiom {}{}{}", beginning(), text_of(system_.axiom),
-                             remark_text(system_.axiom_comment)),
-                 system_.axiom_span);
-        for (const FractintRule& rule : system_.rules) {
-            const std::string successor = text_of(rule.successor);
-            out.line(fmt::format("  {} -> {}{}", name_of(rule.letter), successor.empty() ? "*" : successor,
-                                 remark_text(rule.comment)),
-                     rule.span);
-        }
-        if (two_headings_) {
-            if (used_['d']) out.line("  interpret D -> @XF@X   # along the second heading");
-            if (used_['m']) out.line("  interpret M -> @Xf@X");
-        }
-        out.line("}");
-        return out;
     }
 
   private:
-    void gather() {
-        const auto look = [&](const FractintString& string) {
-            for (const FractintSymbol& symbol : string)
-                used_[static_cast<unsigned char>(symbol.letter)] = true;
-        };
-        look(system_.axiom);
-        for (const FractintRule& rule : system_.rules) {
-            look(rule.successor);
-            used_[static_cast<unsigned char>(rule.letter)] = true;
-        }
-        two_headings_ = uses("dm\\/") && uses("fg+-|");
-    }
-
-    bool uses(std::string_view letters) const {
-        return std::ranges::any_of(letters, [&](char c) { return used_[static_cast<unsigned char>(c)]; });
-    }
-
-    bool has_rule(char letter) const {
-        return std::ranges::find(system_.rules, letter, &FractintRule::letter) != system_.rules.end();
-    }
-
-    /// Fractint's turtle heads to the right at first, and its colour is the last of sixteen.
-    std::string beginning() const {
-        std::string text = two_headings_ ? "-(90)@X-(90)@X " : "-(90)";
-        if (uses("c<>")) text += ";(15)";
-        return text;
-    }
-
-    std::string name_of(char letter) const {
-        if (letter == 'g') return "f";
-        if (!two_headings_ && letter == 'd') return "F";
-        if (!two_headings_ && letter == 'm') return "f";
-        if (letter == 't') return "t"; // T is another command in our strings
-        const std::string name = symbol_name(letter);
-        return name.size() > 1 ? name : std::string(1, static_cast<char>(std::toupper(name[0])));
-    }
-
-    /// Names that stand for a module, in our language, only where they are declared.
-    std::string declared() const {
-        std::string names;
-        const auto add = [&](const std::string& name) {
-            names += fmt::format("{}{}", names.empty() ? "" : " ", name);
-        };
-        for (int c = 0; c < 256; ++c) {
-            const auto letter = static_cast<char>(c);
-            if (!used_[static_cast<std::size_t>(c)] ||
-                fractint_reserved.find(letter) != std::string_view::npos)
-                continue;
-            if (std::string_view("fgdm").find(letter) != std::string_view::npos) continue;
-            const std::string name = name_of(letter);
-            if (name.size() > 1 || !has_rule(letter)) add(name);
-        }
-        return names;
-    }
-
-    std::string number_of(const FractintSymbol& symbol) const {
-        std::string_view digits = symbol.number;
-        bool root = false, inverse = false;
-        for (; !digits.empty() && (digits[0] == 'q' || digits[0] == 'i'); digits.remove_prefix(1))
-            (digits[0] == 'q' ? root : inverse) = true;
-        const double value = leading_number(digits.substr(0, digits.find('.', digits.find('.') + 1))).value;
-        std::string text = value > 0 ? fmt::format("{}", value) : "0";
-        if (value > 0 && root) text = fmt::format("sqrt({})", text);
-        if (value > 0 && inverse) text = "1/" + text;
-        return text;
-    }
-
-    std::string text_of(const FractintString& string) {
-        std::string text;
-        for (const FractintSymbol& symbol : string)
-            text += text_of(symbol);
-        return text;
-    }
-
     std::string turn(char sign, const std::string& degrees) const {
         return two_headings_ ? fmt::format("@X{}({})@X", sign, degrees)
                              : fmt::format("{}({})", sign, degrees);
     }
 
-    std::string text_of(const FractintSymbol& symbol) {
-        switch (symbol.letter) {
-        case '+':
-        case '-':
-        case '[':
-        case ']':
-            return std::string(1, symbol.letter);
-        case '\\':
-            return turn('+', number_of(symbol));
-        case '/':
-            return turn('-', number_of(symbol));
-        case '|':
-            return half_turn(symbol.span);
-        case '!':
-            return "@F";
-        case '@':
-            return scaling(symbol);
-        case 'c':
-        case '<':
-        case '>':
-            return colour(symbol);
-        default:
-            return name_of(symbol.letter);
-        }
-    }
-
-    /// The largest turn of at most 180 degrees; Fractint turns it to the right, reversed or not.
-    std::string half_turn(Span span) {
-        if (system_.angle % 2 == 0) return "|";
-        if (uses("!"))
-            file_.diagnostics.error(span,
-                                    "'|' with an odd angle in a model that reverses turns by '!' has no "
-                                    "translation");
-        return fmt::format("-({}*360/{})", system_.angle / 2, system_.angle);
-    }
-
-    std::string scaling(const FractintSymbol& symbol) {
-        const std::string factor = number_of(symbol);
-        if (factor == "0")
-            file_.diagnostics.error(symbol.span, "'@' needs a number above 0: @0.5, @I2, @Q2, @IQ2");
-        return fmt::format("@S({})", factor);
-    }
-
-    std::string colour(const FractintSymbol& symbol) {
-        const int number = std::min(std::atoi(symbol.number.substr(0, 6).c_str()), 255);
-        if (symbol.letter == 'c') {
-            if (number > 15)
-                file_.diagnostics.warning(symbol.span,
-                                          fmt::format("colour {} becomes colour {}: of Fractint's "
-                                                      "palette the first 16 are known here",
-                                                      number, number % 16));
-            return fmt::format(";({})", number % 16);
-        }
-        return std::string(static_cast<std::size_t>(number % 16), symbol.letter == '<' ? ';' : ',');
-    }
-
-    /// Counts symbols, order by order.
-    std::pair<int, double> steps_to_draw() const {
-        std::array<double, 256> counts{};
-        const auto count = [](const FractintString& string, double times, std::array<double, 256>& into) {
-            for (const FractintSymbol& symbol : string)
-                into[static_cast<unsigned char>(symbol.letter)] += times;
-        };
-        const auto lines = [](const std::array<double, 256>& of) { return of['f'] + of['d']; };
-        count(system_.axiom, 1, counts);
-        int steps = 0;
-        double drawn = lines(counts), all = 0;
-        for (int next = 1; next <= most_steps; ++next) {
-            std::array<double, 256> after = counts;
-            for (const FractintRule& rule : system_.rules)
-                after[static_cast<unsigned char>(rule.letter)] = 0;
-            for (const FractintRule& rule : system_.rules)
-                count(rule.successor, counts[static_cast<unsigned char>(rule.letter)], after);
-            all = 0;
-            for (const double number : after)
-                all += number;
-            if (next > 2 && (lines(after) > most_lines || all > 100 * most_lines)) break;
-            counts = after;
-            steps = next;
-            drawn = lines(counts);
-        }
-        return {steps, drawn};
-    }
-
-    const ForeignFile& file_;
-    const ForeignModel& model_;
-    const FractintSystem& system_;
-    std::array<bool, 256> used_{};
-    bool two_headings_ = false;
+    int angle_;
+    bool two_headings_;
 };
 
 } // namespace
 
 Translation write_fractint_system(const ForeignFile& file, const ForeignModel& model,
-                                  const FractintSystem& system) {
-    return FractintWriter(file, model, system).write();
+                                  FractintSystem fractint) {
+    LSystem& system = fractint.system;
+    const FractintTurtle turtle(fractint);
+    const bool coloured = uses_any(system, "C<>");
+    CpfgDialect dialect;
+    dialect.same = [&](const std::string& symbol) { return turtle.same(symbol); };
+    dialect.told = [&](const LSystemModule& module, Span) { return turtle.told(module); };
+    // Fractint's turtle heads to the right at first, and its colour is the last of sixteen.
+    dialect.start = turtle.two_headings() ? "-(90)@X-(90)@X " : "-(90)";
+    if (coloured) {
+        dialect.start += ";(15)";
+        dialect.head.line("background: 0, 0, 0");
+        for (std::size_t i = 0; i < ega_names.size(); ++i)
+            dialect.head.line(fmt::format("material {} {{ color: {}  ambient: 1  diffuse: 0 }}", ega_names[i],
+                                          ega_colour(i)));
+        dialect.settings.line(fmt::format("  colors {}", fmt::join(ega_names, ", ")));
+    }
+    dialect.settings.line(fmt::format("  angle 360/{}{}", fractint.angle, remark_text(fractint.angle_remark)),
+                          fractint.angle_span);
+    const auto [steps, lines] = steps_to_draw(system);
+    dialect.settings.line(
+        fmt::format("  steps {}{}", steps,
+                    remark_text(fmt::format("Fractint's order; with this it draws {:.0f} lines", lines))));
+    if (turtle.two_headings()) {
+        if (uses_any(system, "D")) dialect.ending.line("  interpret D -> @XF@X   # along the second heading");
+        if (uses_any(system, "M")) dialect.ending.line("  interpret M -> @Xf@X");
+    }
+    system.head_comments.insert(
+        system.head_comments.begin(),
+        {fmt::format("{}: an L-system of Fractint", comment_text(model.name)), model.span});
+    return write_dialect(file, std::move(system), model, dialect);
 }
 
 } // namespace graftal

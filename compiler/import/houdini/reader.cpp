@@ -43,8 +43,10 @@ class HoudiniReader {
     }
 
   private:
-    CpfgSystem& system() { return houdini_.system; }
-    std::vector<CpfgProduction>& productions() { return system().productions[CpfgSection::productions]; }
+    LSystem& system() { return houdini_.system; }
+    std::vector<LSystemProduction>& productions() {
+        return system().productions[LSystemSection::productions];
+    }
 
     void read(const HoudiniLine& line) {
         const Span span = file_.span(line.begin, line.begin + line.value.size());
@@ -133,7 +135,7 @@ class HoudiniReader {
                 file_.diagnostics.warning(system().axiom_span,
                                           fmt::format("the text gives no value for '{}': it is 1", name));
             const double value = known == values_.end() ? 1 : known->second;
-            system().blocks[CpfgMoment::start].push_back(
+            system().blocks[LSystemMoment::start].push_back(
                 {.name = name, .target = name, .value = shortest(value)});
         }
     }
@@ -141,12 +143,12 @@ class HoudiniReader {
     /// Numbers of parameters with which each symbol appears.
     std::map<std::string, std::set<std::size_t>> arities() {
         std::map<std::string, std::set<std::size_t>> all;
-        const auto take = [&](const CpfgString& string) {
-            for (const CpfgModule& module : string)
+        const auto take = [&](const LSystemString& string) {
+            for (const LSystemModule& module : string)
                 all[module.symbol].insert(module.parameters.size());
         };
         take(system().axiom);
-        for (const CpfgProduction& production : productions())
+        for (const LSystemProduction& production : productions())
             take(production.successor);
         return all;
     }
@@ -154,8 +156,8 @@ class HoudiniReader {
     /// Houdini's rules are for a symbol, whatever its parameters: those that are missing are 0.
     void fit_arities() {
         const std::map<std::string, std::set<std::size_t>> all = arities();
-        std::vector<CpfgProduction> fitted;
-        for (const CpfgProduction& production : productions()) {
+        std::vector<LSystemProduction> fitted;
+        for (const LSystemProduction& production : productions()) {
             if (production.predecessor.size() != 1) continue;
             const auto known = all.find(production.predecessor[0].symbol);
             if (known == all.end()) {
@@ -169,11 +171,11 @@ class HoudiniReader {
                 break;
             }
             for (const std::size_t arity : known->second) {
-                CpfgProduction& own = fitted.emplace_back(production);
+                LSystemProduction& own = fitted.emplace_back(production);
                 int names = 0;
                 fit(own.predecessor[0], arity, own, names);
-                for (CpfgString* const context : {&own.left, &own.right})
-                    for (CpfgModule& module : *context) {
+                for (LSystemString* const context : {&own.left, &own.right})
+                    for (LSystemModule& module : *context) {
                         const auto others = all.find(module.symbol);
                         if (others != all.end() && others->second.size() == 1)
                             fit(module, *others->second.begin(), own, names);
@@ -184,7 +186,7 @@ class HoudiniReader {
     }
 
     /// `count`: of the names that were made for parameters that the rule has no name for.
-    static void fit(CpfgModule& module, std::size_t arity, CpfgProduction& production, int& count) {
+    static void fit(LSystemModule& module, std::size_t arity, LSystemProduction& production, int& count) {
         std::vector<std::string>& names = module.parameters;
         for (; names.size() > arity; names.pop_back())
             production.before.push_back({.name = names.back(), .target = names.back(), .value = "0"});
@@ -196,7 +198,7 @@ class HoudiniReader {
     /// The first rule without a probability, behind rules for the same that have some, has their remainder.
     void rest_of_chances() {
         std::map<std::string, std::string> sums;
-        for (CpfgProduction& production : productions()) {
+        for (LSystemProduction& production : productions()) {
             std::string& sum = sums[key_of(production)];
             if (!production.probability.empty())
                 sum += (sum.empty() ? "" : " + ") + production.probability;
@@ -206,12 +208,12 @@ class HoudiniReader {
     }
 
     /// Rules compete if they ask for the same.
-    static std::string key_of(const CpfgProduction& production) {
+    static std::string key_of(const LSystemProduction& production) {
         std::string key = production.condition;
-        for (const CpfgString* const string :
+        for (const LSystemString* const string :
              {&production.left, &production.predecessor, &production.right}) {
             key += "|";
-            for (const CpfgModule& module : *string)
+            for (const LSystemModule& module : *string)
                 key += fmt::format("{}{} ", module.symbol, module.parameters.size());
         }
         return key;
@@ -222,7 +224,7 @@ class HoudiniReader {
     CodeReader code_;
     HoudiniRules rules_;
     HoudiniSystem houdini_;
-    CpfgComments comments_;
+    LSystemComments comments_;
     std::map<std::string, double> values_;
 };
 

@@ -118,9 +118,9 @@ std::string HoudiniRules::expression(std::string_view text, Span span, const std
     return translated_cpfg_expression(known, calls, complain);
 }
 
-CpfgString HoudiniRules::string(std::string_view text, Span span, const std::set<std::string>& names,
-                                bool first) {
-    CpfgString string;
+LSystemString HoudiniRules::string(std::string_view text, Span span, const std::set<std::string>& names,
+                                   bool first) {
+    LSystemString string;
     const std::optional<std::vector<Written>> modules = modules_of(text);
     if (!modules) {
         file_.diagnostics.error(span, "parentheses close the parameters of one symbol");
@@ -131,7 +131,7 @@ CpfgString HoudiniRules::string(std::string_view text, Span span, const std::set
             file_.diagnostics.error(span, "an expression of Houdini in backquotes has no translation");
             break;
         }
-        CpfgModule& module = string.emplace_back();
+        LSystemModule& module = string.emplace_back();
         module.symbol = written.symbol;
         // The name of an attribute is no number.
         const bool named = written.symbol == 'a' && !written.parameters.empty();
@@ -146,14 +146,14 @@ CpfgString HoudiniRules::string(std::string_view text, Span span, const std::set
 }
 
 /// A parameter that is a number asks for that value.
-CpfgString HoudiniRules::formals(std::string_view text, Span span, std::set<std::string>& names,
-                                 std::string& condition) {
-    CpfgString string;
+LSystemString HoudiniRules::formals(std::string_view text, Span span, std::set<std::string>& names,
+                                    std::string& condition) {
+    LSystemString string;
     const std::optional<std::vector<Written>> modules = modules_of(text);
     if (!modules) file_.diagnostics.error(span, "parentheses close the parameters of one symbol");
     if (!modules) return string;
     for (const Written& written : *modules) {
-        CpfgModule& module = string.emplace_back();
+        LSystemModule& module = string.emplace_back();
         module.symbol = written.symbol;
         for (const std::string_view parameter : written.parameters) {
             std::string name(parameter);
@@ -171,8 +171,8 @@ CpfgString HoudiniRules::formals(std::string_view text, Span span, std::set<std:
     return string;
 }
 
-CpfgProduction HoudiniRules::production(std::string_view text, Span span) {
-    CpfgProduction production;
+LSystemProduction HoudiniRules::production(std::string_view text, Span span) {
+    LSystemProduction production;
     production.span = span;
     std::size_t arrow = find_arrow(text);
     const bool drawn = arrow == std::string_view::npos; // people write '->', too
@@ -189,15 +189,11 @@ CpfgProduction HoudiniRules::production(std::string_view text, Span span) {
     std::string condition;
     if (const std::size_t less = find_outside(left, "<"); less != std::string_view::npos) {
         production.left = formals(left.substr(0, less), span, names, condition);
-        production.has_left = true;
         left.remove_prefix(less + 1);
     }
     const std::size_t more = std::min(find_outside(left, ">"), left.size());
     production.predecessor = formals(left.substr(0, more), span, names, condition);
-    if (more < left.size()) {
-        production.right = formals(left.substr(more + 1), span, names, condition);
-        production.has_right = true;
-    }
+    if (more < left.size()) production.right = formals(left.substr(more + 1), span, names, condition);
     if (production.predecessor.size() != 1) file_.diagnostics.error(span, "a rule rewrites one symbol");
     if (colon < head.size() && !trimmed(head.substr(colon + 1)).empty()) {
         const std::string asked = expression(head.substr(colon + 1), span, names, false);

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "compiler/import/cpfg/system.h"
 #include "compiler/import/importer.h"
+#include "compiler/import/l_system.h"
 
 namespace graftal {
 
@@ -16,16 +16,16 @@ class HoudiniRules {
     explicit HoudiniRules(const ForeignFile& file) : file_(file) {}
 
     /// The modules of a string, in whose expressions `names` have a meaning. `first`: before the first step.
-    CpfgString string(std::string_view text, Span span, const std::set<std::string>& names, bool first);
+    LSystemString string(std::string_view text, Span span, const std::set<std::string>& names, bool first);
     /// `[left <] symbol [> right] [: condition] = successor [: probability]`, as code. Reports what is wrong.
-    CpfgProduction production(std::string_view text, Span span);
+    LSystemProduction production(std::string_view text, Span span);
 
     /// Which of the values b, c and d expressions have used so far.
     const std::set<std::string>& values() const { return values_; }
 
   private:
-    CpfgString formals(std::string_view text, Span span, std::set<std::string>& names,
-                       std::string& condition);
+    LSystemString formals(std::string_view text, Span span, std::set<std::string>& names,
+                          std::string& condition);
     std::string expression(std::string_view text, Span span, const std::set<std::string>& names, bool first);
 
     const ForeignFile& file_;

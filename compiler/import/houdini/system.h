@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "compiler/import/cpfg/system.h"
 #include "compiler/import/importer.h"
+#include "compiler/import/l_system.h"
 
 namespace graftal {
 
@@ -15,7 +15,7 @@ struct HoudiniSystem {
     double thickness_scale = 0.9;
     std::optional<double> thickness;
     double gravity = 10;
-    CpfgSystem system; ///< whose expressions are ours
+    LSystem system; ///< whose expressions are ours
 };
 
 /// The model between its places in the file; nothing after an error.

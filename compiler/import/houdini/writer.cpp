@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "compiler/import/cpfg/dialect.h"
-#include "compiler/import/cpfg/names.h"
 #include "compiler/import/cpfg/write/writer.h"
 #include "compiler/import/houdini/system.h"
 #include "compiler/support/number.h"
@@ -29,7 +28,7 @@ class HoudiniTurtle {
     /// All must outlive this.
     HoudiniTurtle(const ForeignFile& file, const HoudiniSystem& houdini, CpfgDialect& dialect)
         : file_(file), houdini_(houdini), dialect_(dialect) {
-        for (const CpfgProduction& production : productions())
+        for (const LSystemProduction& production : houdini.system.productions.at(LSystemSection::productions))
             if (!production.predecessor.empty()) rewritten_.insert(production.predecessor[0].symbol);
     }
 
@@ -39,7 +38,7 @@ class HoudiniTurtle {
         return known == std::end(same_symbols) ? std::string() : std::string(known->second);
     }
 
-    std::optional<std::string> told(const CpfgModule& module, Span span) {
+    std::optional<std::string> told(const LSystemModule& module, Span span) {
         const std::size_t count = module.parameters.size();
         const auto parameter = [&](double otherwise) {
             return count > 0 ? module.parameters[0] : shortest(otherwise);
@@ -69,8 +68,8 @@ class HoudiniTurtle {
             return fmt::format("@A(1/({}))", parameter(houdini_.angle_scale));
         case 'T': // one bend by an arc in degrees, which a move without length carries out
             if (!std::exchange(bends_, true)) {
-                dialect_.settings.emplace_back("  tropism 0, -1, 0");
-                dialect_.settings.emplace_back("  bending after moves");
+                dialect_.settings.line("  tropism 0, -1, 0");
+                dialect_.settings.line("  bending after moves");
             }
             return fmt::format("T(({})*pi/180)g(0)T(0)", parameter(houdini_.gravity));
         case '~': {
@@ -96,21 +95,15 @@ class HoudiniTurtle {
     }
 
   private:
-    const std::vector<CpfgProduction>& productions() const {
-        static const std::vector<CpfgProduction> none;
-        const auto known = houdini_.system.productions.find(CpfgSection::productions);
-        return known == houdini_.system.productions.end() ? none : known->second;
-    }
-
     /// The width belongs to this segment alone.
-    static std::optional<std::string> with_width(const CpfgModule& module) {
+    static std::optional<std::string> with_width(const LSystemModule& module) {
         if (module.symbol[0] == 'f' || module.parameters.size() < 2) return std::nullopt;
         return fmt::format("[!({1})G({0})]{2}({0})", module.parameters[0], module.parameters[1],
                            module.symbol[0] == 'F' ? "f" : "g");
     }
 
     /// Nothing for a symbol that rules rewrite: it is one of the model's own.
-    std::optional<std::string> left_out(const CpfgModule& module, Span span, const char* message) {
+    std::optional<std::string> left_out(const LSystemModule& module, Span span, const char* message) {
         if (rewritten_.contains(module.symbol)) return std::nullopt;
         if (warned_.insert(message).second)
             file_.diagnostics.warning(span, fmt::format("'{}': {}", module.symbol, message));
@@ -131,16 +124,12 @@ Translation write_houdini(const ForeignFile& file, const ForeignModel& model, Ho
     CpfgDialect dialect;
     HoudiniTurtle turtle(file, houdini, dialect);
     dialect.same = HoudiniTurtle::same;
-    dialect.told = [&](const CpfgModule& module, Span span) { return turtle.told(module, span); };
+    dialect.told = [&](const LSystemModule& module, Span span) { return turtle.told(module, span); };
     dialect.drawn_late = {"~"};
-    dialect.settings.push_back("  step " + shortest(houdini.step));
-    CpfgView view;
-    view.angle_deg = houdini.angle_deg;
-    view.width = houdini.thickness;
-    view.width_in_pixels = !houdini.thickness;
-    const CpfgSource source;
-    CpfgNames names(file, source, view, &dialect);
-    return write_cpfg_system(names, houdini.system, model, "");
+    dialect.angle_deg = houdini.angle_deg;
+    if (houdini.thickness) dialect.settings.line(fmt::format("  width {}", *houdini.thickness));
+    dialect.settings.line("  step " + shortest(houdini.step));
+    return write_dialect(file, houdini.system, model, dialect);
 }
 
 } // namespace graftal

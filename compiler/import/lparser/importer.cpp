@@ -1,4 +1,5 @@
 #include <optional>
+#include <utility>
 
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/formats.h"
@@ -30,9 +31,9 @@ bool is_lparser(std::string_view text) {
 }
 
 std::optional<Translation> translate_lparser(const ForeignFile& file, const ForeignModel& model) {
-    const std::optional<LparserSystem> system = read_lparser(file);
+    std::optional<LparserSystem> system = read_lparser(file);
     if (!system) return std::nullopt;
-    return write_lparser(file, model, *system);
+    return write_lparser(file, model, *std::move(system));
 }
 
 constexpr std::string_view lparser_endings[] = {"ls"};

@@ -41,15 +41,17 @@ class LparserReader {
             read_line(line);
         }
         const Span end = file_.span(0, 0);
-        if (file_.diagnostics.error_count() == errors && system_.axiom.empty())
+        if (file_.diagnostics.error_count() == errors && system().axiom.empty())
             file_.diagnostics.error(end, "the file has no axiom")
                 .with_hint("its lines are: recursion depth, angle, thickness, axiom, rules, and '@'");
-        system_.tail = std::move(comments_);
+        system().tail_comments = std::move(comments_);
         if (file_.diagnostics.error_count() > errors) return std::nullopt;
-        return std::move(system_);
+        return std::move(lparser_);
     }
 
   private:
+    LSystem& system() { return lparser_.system; }
+
     void read_line(const TextLine& line) {
         const std::size_t hash = std::min(line.text.find('#'), line.text.size());
         const std::string_view statement = line.text.substr(0, hash);
@@ -58,13 +60,13 @@ class LparserReader {
         span_ = file_.span(line.begin + std::min(first, statement.size()), line.begin + statement.size());
         if (first == std::string_view::npos) {
             if (comment_.find_first_not_of("-=*#_ ") != std::string::npos)
-                comments_.push_back({comment_, span_});
+                comments_.emplace_back(comment_, span_);
             return;
         }
         const std::size_t end = std::min(statement.find_first_of(" \t", first), statement.size());
         const std::string_view word = statement.substr(first, end - first);
-        if (number_ == 0 && is_lparser_keyword(word)) system_.has_keywords = true;
-        if (system_.has_keywords)
+        if (number_ == 0 && is_lparser_keyword(word)) lparser_.has_keywords = true;
+        if (lparser_.has_keywords)
             read_keyword(word, statement.substr(end), line.begin + end);
         else
             read_in_order(word, statement, line.begin + first);
@@ -73,11 +75,11 @@ class LparserReader {
     void read_in_order(std::string_view word, std::string_view statement, std::size_t begin) {
         switch (number_++) {
         case 0:
-            return set(system_.recursion, word);
+            return set(lparser_.recursion, word);
         case 1:
-            return set(system_.angle, word);
+            return set(lparser_.angle, word);
         case 2:
-            return set(system_.thickness, word);
+            return set(lparser_.thickness, word);
         case 3:
             return set_axiom(word, begin);
         default:
@@ -97,11 +99,11 @@ class LparserReader {
     void read_keyword(std::string_view keyword, std::string_view rest, std::size_t begin) {
         ++number_;
         const std::string_view value = trimmed(rest);
-        if (keyword == "recursion") return set(system_.recursion, value);
-        if (keyword == "angle") return set(system_.angle, value);
-        if (keyword == "thickness") return set(system_.thickness, value);
-        if (keyword == "min_thickness") return set(system_.least_thickness.emplace(), value);
-        if (keyword == "switch_yz") return void(system_.switch_yz = value == "1");
+        if (keyword == "recursion") return set(lparser_.recursion, value);
+        if (keyword == "angle") return set(lparser_.angle, value);
+        if (keyword == "thickness") return set(lparser_.thickness, value);
+        if (keyword == "min_thickness") return set(lparser_.least_thickness.emplace(), value);
+        if (keyword == "switch_yz") return void(lparser_.switch_yz = value == "1");
         if (keyword == "color") return add_colour(value);
         if (keyword == "axiom") return set_axiom(rest, begin);
         if (keyword == "rule") return add_rule(rest, begin);
@@ -116,17 +118,17 @@ class LparserReader {
 
     void set(LparserNumber& number, std::string_view text) {
         number.span = span_;
-        number.comment = comment_;
+        number.remark = comment_;
         const LeadingNumber read = leading_number(code_.signs(text.substr(0, 60), span_));
         number.value = read.value;
-        take_comments(system_.head);
+        take_comments(system().head_comments);
         if (read.length == 0 || !std::isfinite(number.value))
             file_.diagnostics.error(span_, fmt::format("expected a number, found '{}'", comment_text(text)))
                 .with_hint(
                     "a file of L-Parser begins with lines of recursion depth, angle, thickness, axiom");
     }
 
-    void take_comments(std::vector<LparserLine>& lines) {
+    void take_comments(LSystemComments& lines) {
         lines.insert(lines.end(), comments_.begin(), comments_.end());
         comments_.clear();
     }
@@ -148,16 +150,16 @@ class LparserReader {
         }
         colour.index = numbers[0];
         colour.rgb = {numbers[1], numbers[2], numbers[3]};
-        take_comments(system_.head);
-        system_.colours.push_back(colour);
+        take_comments(system().head_comments);
+        lparser_.colours.push_back(colour);
     }
 
     void set_axiom(std::string_view text, std::size_t begin) {
-        if (!system_.axiom.empty()) file_.diagnostics.warning(span_, "a second axiom: this one counts");
-        take_comments(system_.head);
-        system_.axiom = string_of(text, begin);
-        system_.axiom_span = span_;
-        system_.axiom_comment = comment_;
+        if (!system().axiom.empty()) file_.diagnostics.warning(span_, "a second axiom: this one counts");
+        take_comments(system().head_comments);
+        system().axiom = string_of(text, begin);
+        system().axiom_span = span_;
+        system().axiom_remark = comment_;
     }
 
     void add_rule(std::string_view text, std::size_t begin) {
@@ -169,33 +171,37 @@ class LparserReader {
         }
         const std::string left = code_.signs(trimmed(text.substr(0, equal)), span_);
         if (left.empty()) return;
-        LparserRule rule{.letter = left[0], .span = span_, .comment = comment_};
+        LSystemProduction rule;
+        rule.predecessor.emplace_back().symbol = left[0];
+        rule.span = span_;
+        rule.remark = comment_;
         if (left.size() > 1)
             file_.diagnostics.warning(span_,
                                       "a rule is for one symbol: of the left side the first one counts");
         rule.successor = string_of(text.substr(equal + 1), begin + equal + 1);
-        take_comments(rule.before);
-        const auto same = std::ranges::find(system_.rules, rule.letter, &LparserRule::letter);
-        if (same == system_.rules.end())
-            system_.rules.push_back(std::move(rule));
+        take_comments(rule.comments);
+        std::vector<LSystemProduction>& rules = system().productions[LSystemSection::productions];
+        const auto same = std::ranges::find_if(
+            rules, [&](const LSystemProduction& known) { return known.predecessor[0].symbol[0] == left[0]; });
+        if (same == rules.end())
+            rules.push_back(std::move(rule));
         else
-            file_.diagnostics
-                .warning(span_, fmt::format("a second rule for '{}': the first counts", rule.letter))
+            file_.diagnostics.warning(span_, fmt::format("a second rule for '{}': the first counts", left[0]))
                 .with_note(same->span, "the first is here");
     }
 
     /// Spaces do not count. A number in parentheses belongs to the symbol before it.
-    LparserString string_of(std::string_view text, std::size_t begin) {
-        LparserString string;
+    LSystemString string_of(std::string_view text, std::size_t begin) {
+        LSystemString string;
         for (std::size_t at = 0; at < text.size();) {
             const std::size_t from = at;
             const std::string signs = code_.next(text, at, begin);
             for (std::size_t i = 0; i + 1 < signs.size(); ++i)
-                string.push_back({signs[i], std::nullopt, file_.span(begin + from, begin + at)});
+                string.push_back({{signs[i]}, {}, false, file_.span(begin + from, begin + at)});
             if (signs.empty()) continue;
             const char c = signs.back();
             if (std::isspace(static_cast<unsigned char>(c))) continue;
-            LparserSymbol symbol{c, std::nullopt, {}};
+            LSystemModule symbol{{c}, {}, false, {}};
             if (c == '(' && string.empty()) {
                 file_.diagnostics.error(file_.span(begin + from, begin + at),
                                         "a string that begins with a number for the symbol before it has no "
@@ -214,8 +220,8 @@ class LparserReader {
                     file_.diagnostics.error(file_.span(begin + at, begin + at + 1), "this '(' is not closed");
                     return string;
                 }
-                symbol.number = code_.signs(text.substr(at + 1, close - at - 1),
-                                            file_.span(begin + at + 1, begin + close));
+                symbol.parameters.push_back(code_.signs(text.substr(at + 1, close - at - 1),
+                                                        file_.span(begin + at + 1, begin + close)));
                 at = close + 1;
             }
             symbol.span = file_.span(begin + from, begin + at);
@@ -226,11 +232,11 @@ class LparserReader {
 
     const ForeignFile& file_;
     CodeReader code_;
-    LparserSystem system_;
+    LparserSystem lparser_;
     Span span_; ///< of the statement
     std::string comment_;
-    std::vector<LparserLine> comments_; ///< since the last statement
-    int number_ = 0;                    ///< of statements
+    LSystemComments comments_; ///< since the last statement
+    int number_ = 0;           ///< of statements
     bool ended_ = false;
 };
 

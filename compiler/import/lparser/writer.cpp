@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "compiler/import/cpfg/dialect.h"
+#include "compiler/import/cpfg/write/writer.h"
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/lparser/commands.h"
 
@@ -26,95 +30,129 @@ constexpr std::array<double, 48> usual = {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.8,  0.
 
 class LparserWriter {
   public:
-    LparserWriter(const ForeignFile& file, const ForeignModel& model, const LparserSystem& system)
-        : file_(file), model_(model), system_(system) {}
+    LparserWriter(const ForeignFile& file, const ForeignModel& model, LparserSystem lparser)
+        : file_(file), model_(model), lparser_(std::move(lparser)) {}
 
     Translation write() {
         gather();
-        check_digits();
-        Translation out{"lsys", {}, {}};
-        comments(out, system_.head, "");
-        const int colours = write_materials(out);
-        out.line(fmt::format("lsys {} {{", block_name(model_.name)), model_.span);
-        if (const std::string names = declared(); !names.empty()) out.line("  modules " + names);
-        write_settings(out, colours);
-        out.line(fmt::format("  axiom {}{}{}{}", system_.switch_yz ? "@F" : "", ";(2)",
-                             text_of(system_.axiom), remark_text(system_.axiom_comment)),
-                 system_.axiom_span);
-        for (const LparserRule& rule : system_.rules)
-            write_rule(out, rule);
-        comments(out, system_.tail, "  ");
-        write_meanings(out);
-        out.line("}");
-        return out;
+        CpfgDialect dialect;
+        dialect.same = [](const std::string& symbol) {
+            return std::string_view("Ffg+-&^|").find(symbol) == std::string_view::npos ? "" : symbol;
+        };
+        dialect.told = [&](const LSystemModule& module, Span) { return told(module); };
+        dialect.start = lparser_.switch_yz ? "@F;(2)" : ";(2)";
+        write_settings(dialect.settings, write_materials(dialect.head));
+        write_meanings(dialect.ending);
+        for (LSystemProduction& rule : std::exchange(rules(), {}))
+            add_rule(std::move(rule));
+        name_turns(lparser_.system.axiom);
+        for (LSystemProduction& rule : rules()) {
+            name_turns(rule.predecessor);
+            name_turns(rule.successor);
+        }
+        return write_dialect(file_, std::move(lparser_.system), model_, dialect);
     }
 
   private:
+    std::vector<LSystemProduction>& rules() {
+        return lparser_.system.productions[LSystemSection::productions];
+    }
+    const std::vector<LSystemProduction>& rules() const {
+        return lparser_.system.productions.at(LSystemSection::productions);
+    }
+    static char letter_of(const LSystemProduction& rule) { return rule.predecessor[0].symbol[0]; }
+
     void gather() {
-        for (const LparserRule& rule : system_.rules)
-            ruled_.insert(rule.letter);
-        look(system_.axiom);
-        for (const LparserRule& rule : system_.rules)
-            look(rule.successor);
+        for (const LSystemProduction& rule : rules())
+            ruled_.insert(letter_of(rule));
+        std::vector<LSystemString*> strings = {&lparser_.system.axiom};
+        for (LSystemProduction& rule : rules())
+            strings.push_back(&rule.successor);
+        check_digits(strings);
+        for (LSystemString* const string : strings)
+            for (LSystemModule& module : *string) {
+                take_number(module);
+                used_.insert(module.symbol[0]);
+                if (module.has_parentheses) numbered_.insert(module.symbol[0]);
+            }
         // A number behind a symbol stays behind the last symbol of its successor.
         for (bool grows = true; grows;) {
             grows = false;
-            for (const LparserRule& rule : system_.rules) {
-                if (!numbered_.contains(rule.letter) || rule.successor.empty()) continue;
-                const LparserSymbol& last = rule.successor.back();
-                if (!last.number) grows = numbered_.insert(last.letter).second || grows;
+            for (const LSystemProduction& rule : rules()) {
+                if (!numbered_.contains(letter_of(rule)) || rule.successor.empty()) continue;
+                const LSystemModule& last = rule.successor.back();
+                if (!last.has_parentheses && takes_number(last.symbol[0]))
+                    grows = numbered_.insert(last.symbol[0]).second || grows;
             }
         }
         find_plain();
     }
 
-    /// Without the last symbol where a number of the symbol that becomes the string stands behind it.
-    void look_for_plain(const LparserString& string, bool last_too) {
-        for (std::size_t i = 0; i + (last_too ? 0 : 1) < string.size(); ++i)
-            if (!string[i].number) plain_.insert(string[i].letter);
-    }
-
-    void find_plain() {
-        look_for_plain(system_.axiom, true);
-        std::size_t known = 0;
-        do {
-            known = plain_.size();
-            for (const LparserRule& rule : system_.rules) {
-                const bool plain = plain_.contains(rule.letter) || !numbered_.contains(rule.letter);
-                look_for_plain(rule.successor, plain);
-            }
-        } while (plain_.size() > known);
-    }
-
-    void look(const LparserString& string) {
-        for (const LparserSymbol& symbol : string) {
-            used_.insert(symbol.letter);
-            if (symbol.number) numbered_.insert(symbol.letter);
-            if (symbol.number) digits_ += *symbol.number;
-        }
-    }
-
     /// The program rewrites the digits of numbers too.
-    void check_digits() {
-        for (const LparserRule& rule : system_.rules)
-            if (digits_.find(rule.letter) != std::string::npos)
+    void check_digits(const std::vector<LSystemString*>& strings) {
+        std::set<char> digits;
+        for (const LSystemString* const string : strings)
+            for (const LSystemModule& module : *string)
+                for (const std::string& number : module.parameters)
+                    digits.insert(number.begin(), number.end());
+        for (const LSystemProduction& rule : rules())
+            if (digits.contains(letter_of(rule)))
                 file_.diagnostics
-                    .error(rule.span, fmt::format("this rule would rewrite the '{}' of numbers", rule.letter))
+                    .error(rule.span,
+                           fmt::format("this rule would rewrite the '{}' of numbers", letter_of(rule)))
                     .with_hint("give the symbol another letter");
     }
 
-    bool has_rule(char letter) const { return ruled_.contains(letter); }
-
-    static void comments(Translation& out, const std::vector<LparserLine>& lines, const char* indent) {
-        for (const LparserLine& line : lines)
-            out.line(fmt::format("{}# {}", indent, line.comment), line.span);
+    /// Whether a number behind the symbol has a meaning.
+    bool takes_number(char letter) const {
+        const LparserCommand* const command = lparser_command(letter);
+        return !command || *command->with_number || (has_rule(letter) && !keeps_name(letter));
     }
+
+    /// The number as scanf reads it, without the text behind it; 0 without a number.
+    void take_number(LSystemModule& module) {
+        if (module.parameters.empty()) return;
+        module.has_parentheses = takes_number(module.symbol[0]);
+        if (!module.has_parentheses) {
+            file_.diagnostics.warning(module.span,
+                                      fmt::format("the number of '{}' means nothing", module.symbol));
+            return module.parameters.clear();
+        }
+        const std::string text = module.parameters[0].substr(0, 40);
+        const auto [read, length] = leading_number(text);
+        const double value = std::isfinite(read) ? read : 0;
+        if (length == 0 || length != text.size() || !std::isfinite(read))
+            file_.diagnostics.warning(
+                module.span, fmt::format("'{}' is read as the number {}", comment_text(text), value));
+        module.parameters[0] = fmt::format("{}", value);
+    }
+
+    /// Without the last symbol where a number of the symbol that becomes the string stands behind it.
+    void look_for_plain(const LSystemString& string, bool last_too) {
+        for (std::size_t i = 0; i + (last_too ? 0 : 1) < string.size(); ++i)
+            if (!string[i].has_parentheses) plain_.insert(string[i].symbol[0]);
+    }
+
+    /// Whether the symbol may stand without a number.
+    bool is_plain(char letter) const { return plain_.contains(letter) || !numbered_.contains(letter); }
+
+    void find_plain() {
+        look_for_plain(lparser_.system.axiom, true);
+        std::size_t known = 0;
+        do {
+            known = plain_.size();
+            for (const LSystemProduction& rule : rules())
+                look_for_plain(rule.successor, is_plain(letter_of(rule)));
+        } while (plain_.size() > known);
+    }
+
+    bool has_rule(char letter) const { return ruled_.contains(letter); }
 
     /// Writes the materials; gives their number.
     int write_materials(Translation& out) {
         std::map<int, const LparserColour*> own;
         int count = static_cast<int>(usual.size() / 3);
-        for (const LparserColour& colour : system_.colours) {
+        for (const LparserColour& colour : lparser_.colours) {
             own[colour.index] = &colour;
             count = std::max(count, colour.index + 1);
         }
@@ -137,44 +175,49 @@ class LparserWriter {
         out.line("  colors " + names);
         const auto number = [&](const char* statement, const LparserNumber& of, double value,
                                 const char* more = "") {
-            out.line(fmt::format("  {} {}{}{}", statement, value, more, remark_text(of.comment)), of.span);
+            out.line(fmt::format("  {} {}{}{}", statement, value, more, remark_text(of.remark)), of.span);
         };
-        if (!(system_.recursion.value >= 0 && system_.recursion.value == std::floor(system_.recursion.value)))
-            file_.diagnostics.error(system_.recursion.span,
+        if (!(lparser_.recursion.value >= 0 &&
+              lparser_.recursion.value == std::floor(lparser_.recursion.value)))
+            file_.diagnostics.error(lparser_.recursion.span,
                                     "a recursion depth that is no whole number has no "
                                     "translation");
-        if (!(system_.thickness.value > 0))
-            file_.diagnostics.error(system_.thickness.span, "a thickness must be above 0");
-        number("steps", system_.recursion, system_.recursion.value);
-        number("angle", system_.angle, system_.angle.value);
-        number("thickness", system_.thickness, system_.thickness.value, "/100");
-        if (system_.least_thickness && system_.least_thickness->value > 0)
-            number("thinnest", *system_.least_thickness, system_.least_thickness->value, "/100");
-        if (!system_.has_keywords) out.line("  step 100");
+        if (!(lparser_.thickness.value > 0))
+            file_.diagnostics.error(lparser_.thickness.span, "a thickness must be above 0");
+        number("steps", lparser_.recursion, lparser_.recursion.value);
+        number("angle", lparser_.angle, lparser_.angle.value);
+        number("thickness", lparser_.thickness, lparser_.thickness.value, "/100");
+        if (lparser_.least_thickness && lparser_.least_thickness->value > 0)
+            number("thinnest", *lparser_.least_thickness, lparser_.least_thickness->value, "/100");
+        if (!lparser_.has_keywords) out.line("  step 100");
     }
 
-    void write_rule(Translation& out, const LparserRule& rule) {
-        comments(out, rule.before, "  ");
-        if (std::string_view("[]()").find(rule.letter) != std::string_view::npos) {
-            file_.diagnostics.error(rule.span,
-                                    fmt::format("a rule for '{}' has no translation", rule.letter));
-            return;
+    /// A symbol with a number is another module than the symbol alone.
+    void add_rule(LSystemProduction rule) {
+        const char letter = letter_of(rule);
+        if (std::string_view("[]()").find(letter) != std::string_view::npos)
+            file_.diagnostics.error(rule.span, fmt::format("a rule for '{}' has no translation", letter));
+        if (is_plain(letter)) {
+            rules().push_back(rule);
+            rule.comments.clear();
+            rule.remark.clear();
         }
-        const std::string name = name_of(rule.letter);
-        const std::string successor = text_of(rule.successor);
-        const std::string said = remark_text(rule.comment);
-        const bool plain = plain_.contains(rule.letter) || !numbered_.contains(rule.letter);
-        if (plain)
-            out.line(fmt::format("  {} -> {}{}", name, successor.empty() ? "*" : successor, said), rule.span);
-        if (!numbered_.contains(rule.letter)) return;
-        std::string numbered = successor;
-        if (!rule.successor.empty() && !rule.successor.back().number) {
-            LparserString string = rule.successor;
-            string.back().number = "x";
-            numbered = text_of(string);
+        if (!numbered_.contains(letter)) return;
+        const auto give_number = [](LSystemModule& module) {
+            module.parameters = {"x"};
+            module.has_parentheses = true;
+        };
+        give_number(rule.predecessor[0]);
+        if (!rule.successor.empty()) {
+            LSystemModule& last = rule.successor.back();
+            if (!last.has_parentheses && takes_number(last.symbol[0])) give_number(last);
         }
-        out.line(fmt::format("  {}(x) -> {}{}", name, numbered.empty() ? "*" : numbered, plain ? "" : said),
-                 rule.span);
+        rules().push_back(std::move(rule));
+    }
+
+    static void name_turns(LSystemString& string) {
+        for (LSystemModule& module : string)
+            if (module.symbol == "~") module.symbol = "Shake";
     }
 
     void write_meanings(Translation& out) {
@@ -192,10 +235,10 @@ class LparserWriter {
             const LparserCommand* const command = lparser_command(letter);
             if (!command || keeps_name(letter)) continue;
             if (plain_.contains(letter))
-                lines.push_back(fmt::format("{} -> {}", name_of(letter), command->text));
+                lines.push_back(fmt::format("{} -> {}", symbol_name(letter), command->text));
             if (numbered_.contains(letter) && *command->with_number)
                 lines.push_back(
-                    fmt::format("{}(x) -> {}", name_of(letter), with_number(command->with_number, "x")));
+                    fmt::format("{}(x) -> {}", symbol_name(letter), with_number(command->with_number, "x")));
         }
         if (lines.empty()) return;
         out.line("  interpret {");
@@ -207,47 +250,24 @@ class LparserWriter {
     /// Whether a block may be drawn between braces: there is more between them than moves and turns.
     bool draws_in_polygons() const {
         if (!used_.contains('F') && !used_.contains('Z')) return false;
-        const auto draws = [&](const LparserString& string) {
+        const auto draws = [&](const LSystemString& string) {
             int depth = 0;
-            for (const LparserSymbol& symbol : string) {
-                depth += (symbol.letter == '{') - (symbol.letter == '}');
-                if (symbol.letter == 'F' || symbol.letter == 'Z' ||
-                    (has_rule(symbol.letter) && symbol.letter != 'f'))
-                    if (depth > 0) return true;
+            for (const LSystemModule& module : string) {
+                const char letter = module.symbol[0];
+                depth += (letter == '{') - (letter == '}');
+                if (depth > 0 && (letter == 'F' || letter == 'Z' || (has_rule(letter) && letter != 'f')))
+                    return true;
             }
             return depth != 0;
         };
-        return draws(system_.axiom) || std::ranges::any_of(system_.rules, [&](const LparserRule& rule) {
-                   return draws(rule.successor);
-               });
+        return draws(lparser_.system.axiom) ||
+               std::ranges::any_of(rules(),
+                                   [&](const LSystemProduction& rule) { return draws(rule.successor); });
     }
 
     /// Whether a command is one module of ours, that may have productions.
     static bool keeps_name(char letter) {
-        return std::string_view("FfgZzt+-&^|").find(letter) != std::string_view::npos;
-    }
-
-    std::string name_of(char letter) const {
-        if (keeps_name(letter)) return std::string(1, letter);
-        if (letter == 'G' || letter == 'T') return std::string(2, letter); // they are commands in our strings
-        return symbol_name(letter);
-    }
-
-    std::string declared() const {
-        std::string names;
-        std::set<char> all = used_;
-        all.insert(ruled_.begin(), ruled_.end());
-        for (const char letter : all) {
-            const LparserCommand* const command = lparser_command(letter);
-            if (command && (!has_rule(letter) || keeps_name(letter)) &&
-                std::string_view("Zzt").find(letter) == std::string_view::npos)
-                continue;
-            const std::string name = name_of(letter);
-            if (name.size() > 1 || !has_rule(letter))
-                names += fmt::format("{}{}", names.empty() ? "" : " ", name);
-        }
-        if (used_.contains('~')) names += std::string(names.empty() ? "" : " ") + "Shake";
-        return names;
+        return std::string_view("FfgZzt+-&^|~").find(letter) != std::string_view::npos;
     }
 
     static std::string with_number(std::string_view pattern, std::string_view number) {
@@ -255,53 +275,27 @@ class LparserWriter {
         return text.replace(text.find('%'), 1, number);
     }
 
-    std::string text_of(const LparserString& string) {
-        std::string text;
-        for (const LparserSymbol& symbol : string)
-            text += text_of(symbol);
-        return text;
-    }
-
-    std::string text_of(const LparserSymbol& symbol) {
-        const LparserCommand* const command = lparser_command(symbol.letter);
-        if (!command || (has_rule(symbol.letter) && !keeps_name(symbol.letter))) {
-            const std::string name = name_of(symbol.letter);
-            return symbol.number ? fmt::format("{}({})", name, number_of(symbol)) : name;
-        }
-        if (!symbol.number) return command->text;
-        if (*command->with_number) return with_number(command->with_number, number_of(symbol));
-        if (*symbol.number != "x")
-            file_.diagnostics.warning(symbol.span,
-                                      fmt::format("the number of '{}' means nothing", symbol.letter));
-        return command->text;
-    }
-
-    /// The number as scanf reads it, without the text behind it; 0 without a number.
-    std::string number_of(const LparserSymbol& symbol) {
-        if (*symbol.number == "x") return "x";
-        const std::string text = symbol.number->substr(0, 40);
-        const auto [value, length] = leading_number(text);
-        if (length == 0 || length != text.size() || !std::isfinite(value))
-            file_.diagnostics.warning(symbol.span,
-                                      fmt::format("'{}' is read as the number {}", comment_text(text),
-                                                  std::isfinite(value) ? value : 0));
-        return fmt::format("{}", std::isfinite(value) ? value : 0);
+    /// Nothing for a symbol that is one module of the model's, or one of ours with the same parameters.
+    std::optional<std::string> told(const LSystemModule& module) const {
+        const LparserCommand* const command = lparser_command(module.symbol[0]);
+        if (!command || keeps_name(module.symbol[0]) || has_rule(module.symbol[0])) return std::nullopt;
+        return module.has_parentheses ? with_number(command->with_number, module.parameters[0])
+                                      : command->text;
     }
 
     const ForeignFile& file_;
     const ForeignModel& model_;
-    const LparserSystem& system_;
-    std::set<char> used_;
+    LparserSystem lparser_;
+    std::set<char> used_; ///< in strings
     std::set<char> ruled_;
     std::set<char> plain_;    ///< may have no number behind them
     std::set<char> numbered_; ///< may have a number behind them
-    std::string digits_;      ///< of all numbers
 };
 
 } // namespace
 
-Translation write_lparser(const ForeignFile& file, const ForeignModel& model, const LparserSystem& system) {
-    return LparserWriter(file, model, system).write();
+Translation write_lparser(const ForeignFile& file, const ForeignModel& model, LparserSystem lparser) {
+    return LparserWriter(file, model, std::move(lparser)).write();
 }
 
 } // namespace graftal

@@ -26,7 +26,7 @@ bool is_lpy(std::string_view text) {
 }
 
 std::optional<Translation> translate_lpy(const ForeignFile& file, const ForeignModel& model) {
-    std::optional<CpfgSystem> system = read_lpy(file);
+    std::optional<LSystem> system = read_lpy(file);
     if (!system) return std::nullopt;
     return write_lpy(file, model, std::move(*system));
 }

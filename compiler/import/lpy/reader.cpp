@@ -48,7 +48,7 @@ class LpyReader {
         : file_(file), python_([this](Span span, const std::string& message) { complain(span, message); }),
           strings_(python_, [this](Span span, const std::string& message) { complain(span, message); }) {}
 
-    std::optional<CpfgSystem> read() {
+    std::optional<LSystem> read() {
         const std::size_t errors = file_.diagnostics.error_count();
         std::vector<LpyLine> lines = lpy_lines(file_.text(), file_.file);
         CodeReader code(file_);
@@ -232,11 +232,12 @@ class LpyReader {
                     python_.name_value(name, value, line.span);
     }
 
-    static std::optional<CpfgMoment> moment_of(std::string_view text) {
-        constexpr std::pair<std::string_view, CpfgMoment> words[] = {{"Start", CpfgMoment::start},
-                                                                     {"StartEach", CpfgMoment::start_each},
-                                                                     {"EndEach", CpfgMoment::end_each},
-                                                                     {"End", CpfgMoment::end}};
+    static std::optional<LSystemMoment> moment_of(std::string_view text) {
+        constexpr std::pair<std::string_view, LSystemMoment> words[] = {
+            {"Start", LSystemMoment::start},
+            {"StartEach", LSystemMoment::start_each},
+            {"EndEach", LSystemMoment::end_each},
+            {"End", LSystemMoment::end}};
         const std::string_view name = text.starts_with("def ") ? cpfg_name_at(trimmed(text.substr(4))) : "";
         for (const auto& [word, moment] : words)
             if (name == word) return moment;
@@ -245,19 +246,19 @@ class LpyReader {
 
     /// Statements of `Start`, `StartEach`, `EndEach` and `End` that give the file's numbers other values.
     void read_moment(const LpyLine& line) {
-        const std::optional<CpfgMoment> moment = moment_of(line.text);
+        const std::optional<LSystemMoment> moment = moment_of(line.text);
         if (!moment) return;
         std::set<std::string> globals;
         LpyValues values;
         bool good = true;
         quiet_ = &good;
-        const std::optional<CpfgBlock> block = block_of(line.below, globals, values);
+        const std::optional<LSystemBlock> block = block_of(line.below, globals, values);
         quiet_ = nullptr;
         if (good && block) {
             moments_.push_back({*moment, *block, line.span});
             return;
         }
-        if (*moment != CpfgMoment::end)
+        if (*moment != LSystemMoment::end)
             for (const std::string& name : globals)
                 python_.name_unknown(name, line.span);
         file_.diagnostics.warning(line.span, fmt::format("'{}' is Python that has no translation, and is "
@@ -265,9 +266,9 @@ class LpyReader {
                                                          cpfg_name_at(trimmed(line.text.substr(4)))));
     }
 
-    std::optional<CpfgBlock> block_of(const std::vector<LpyLine>& lines, std::set<std::string>& globals,
-                                      LpyValues& values) {
-        CpfgBlock block;
+    std::optional<LSystemBlock> block_of(const std::vector<LpyLine>& lines, std::set<std::string>& globals,
+                                         LpyValues& values) {
+        LSystemBlock block;
         for (std::size_t i = 0; i < lines.size(); ++i) {
             const LpyLine& line = lines[i];
             const std::string_view text = line.text, word = cpfg_name_at(text);
@@ -301,13 +302,13 @@ class LpyReader {
     }
 
     void name_numbers() {
-        CpfgBlock& start = system_.blocks[CpfgMoment::start];
+        LSystemBlock& start = system_.blocks[LSystemMoment::start];
         for (const LpyPython::Number& number : python_.numbers()) {
             start.push_back({.name = number.name, .target = number.name, .value = number.value});
-            system_.block_spans.try_emplace(CpfgMoment::start, number.span);
+            system_.block_spans.try_emplace(LSystemMoment::start, number.span);
         }
         for (const Moment& moment : moments_) {
-            CpfgBlock& block = system_.blocks[moment.moment];
+            LSystemBlock& block = system_.blocks[moment.moment];
             block.insert(block.end(), moment.block.begin(), moment.block.end());
             system_.block_spans.insert_or_assign(moment.moment, moment.span);
         }
@@ -321,10 +322,10 @@ class LpyReader {
             return;
         }
         if (turns(line)) {
-            if (behind(text, "production")) section_ = CpfgSection::productions;
-            if (behind(text, "decomposition")) section_ = CpfgSection::decomposition;
+            if (behind(text, "production")) section_ = LSystemSection::productions;
+            if (behind(text, "decomposition")) section_ = LSystemSection::decomposition;
             if (behind(text, "homomorphism") || behind(text, "interpretation"))
-                section_ = CpfgSection::homomorphism;
+                section_ = LSystemSection::homomorphism;
             return;
         }
         if (const auto axiom = behind(text, "Axiom")) {
@@ -352,7 +353,7 @@ class LpyReader {
         LpyValues values;
         std::string condition, spaced(symbols);
         std::ranges::replace(spaced, ',', ' ');
-        for (const CpfgModule& module : strings_.formals(spaced, span, values, condition))
+        for (const LSystemModule& module : strings_.formals(spaced, span, values, condition))
             names += module.symbol + " ";
         if (!system_.filter.empty() && (system_.filter != word || system_.filter_symbols != names))
             complain(span, "'consider' and 'ignore' for some of the rules have no translation");
@@ -366,7 +367,7 @@ class LpyReader {
         const std::size_t arrow = text.find("-->");
         const std::size_t end = arrow != std::string_view::npos ? arrow : find_outside(text, ":");
         std::string_view head = text.substr(0, end);
-        CpfgProduction rule;
+        LSystemProduction rule;
         rule.span = line.span;
         rule.comments = std::exchange(comments_, {});
         if (head.find("<<") != std::string_view::npos || head.find(">>") != std::string_view::npos ||
@@ -381,10 +382,8 @@ class LpyReader {
         rule.predecessor = strings_.formals(head.substr(0, more), line.span, values, rule.condition);
         if (more < head.size())
             rule.right = strings_.formals(head.substr(more + 1), line.span, values, rule.condition);
-        rule.has_left = !rule.left.empty();
-        rule.has_right = !rule.right.empty();
         if (rule.predecessor.empty()) return complain(line.span, "this rule rewrites nothing");
-        if (section_ != CpfgSection::productions && (rule.has_left || rule.has_right))
+        if (section_ != LSystemSection::productions && (!rule.left.empty() || !rule.right.empty()))
             return complain(line.span,
                             "a context of an interpretation or a decomposition has no translation");
         if (arrow != std::string_view::npos) {
@@ -397,32 +396,32 @@ class LpyReader {
             lines.push_back({std::string(rest), "", line.span, line.indent + 1, {}});
         lines.insert(lines.end(), line.below.begin(), line.below.end());
         for (LpyPath& way : python_.ways(lines, values)) {
-            CpfgProduction& own = system_.productions[section_].emplace_back(rule);
+            LSystemProduction& own = system_.productions[section_].emplace_back(rule);
             rule.comments.clear();
             own.span = way.spans.back();
             for (const std::string& condition : way.conditions)
                 own.condition += (own.condition.empty() ? "" : " && ") + condition;
             own.probability = way.chance;
             for (std::size_t i = 0; i < way.produced.size(); ++i) {
-                const CpfgString part = strings_.read(way.produced[i], way.spans[i], way.values);
+                const LSystemString part = strings_.read(way.produced[i], way.spans[i], way.values);
                 own.successor.insert(own.successor.end(), part.begin(), part.end());
             }
         }
     }
 
     struct Moment {
-        CpfgMoment moment;
-        CpfgBlock block;
+        LSystemMoment moment;
+        LSystemBlock block;
         Span span;
     };
 
     const ForeignFile& file_;
     LpyPython python_;
     LpyStrings strings_;
-    CpfgSystem system_;
-    CpfgComments comments_;
+    LSystem system_;
+    LSystemComments comments_;
     std::vector<Moment> moments_;
-    CpfgSection section_ = CpfgSection::productions;
+    LSystemSection section_ = LSystemSection::productions;
     bool in_rules_ = false, ended_ = false;
     bool* quiet_ = nullptr;
     std::optional<std::size_t> last_; ///< place of the last complaint
@@ -430,7 +429,7 @@ class LpyReader {
 
 } // namespace
 
-std::optional<CpfgSystem> read_lpy(const ForeignFile& file) {
+std::optional<LSystem> read_lpy(const ForeignFile& file) {
     return LpyReader(file).read();
 }
 

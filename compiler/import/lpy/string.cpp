@@ -58,7 +58,7 @@ bool takes_objects(std::string_view symbol) {
 }
 
 /// Queries of L-Py have the axes x, y, z, which are our z, x, y.
-void finish(CpfgModule& module) {
+void finish(LSystemModule& module) {
     if (module.symbol[0] == '?' && module.parameters.size() == 3)
         std::ranges::rotate(module.parameters, module.parameters.begin() + 1);
     module.has_parentheses = !module.parameters.empty();
@@ -131,15 +131,15 @@ std::vector<LpyStrings::Written> LpyStrings::modules_of(std::string_view text, S
     return modules;
 }
 
-CpfgString LpyStrings::read(std::string_view text, Span span, const LpyValues& values) {
-    CpfgString string;
+LSystemString LpyStrings::read(std::string_view text, Span span, const LpyValues& values) {
+    LSystemString string;
     if (trimmed(text) == "*") return string;
     for (const Written& written : modules_of(text, span)) {
         if (written.symbol == "*" || written.symbol == "$") {
             complain_(span, fmt::format("'{}' among modules has no translation", written.symbol));
             break;
         }
-        CpfgModule& module = string.emplace_back();
+        LSystemModule& module = string.emplace_back();
         module.symbol = written.symbol;
         std::size_t first = written.symbol == "Sweep" ? 2 : 0;      // a path and a section
         if (written.symbol == "~" && !written.parameters.empty()) { // ~('l', 2)
@@ -156,14 +156,15 @@ CpfgString LpyStrings::read(std::string_view text, Span span, const LpyValues& v
     return string;
 }
 
-CpfgString LpyStrings::formals(std::string_view text, Span span, LpyValues& values, std::string& condition) {
-    CpfgString string;
+LSystemString LpyStrings::formals(std::string_view text, Span span, LpyValues& values,
+                                  std::string& condition) {
+    LSystemString string;
     for (const Written& written : modules_of(text, span)) {
         if (std::string_view("*$").find(written.symbol) != std::string_view::npos) {
             complain_(span, fmt::format("'{}' in what a rule looks for has no translation", written.symbol));
             break;
         }
-        CpfgModule& module = string.emplace_back();
+        LSystemModule& module = string.emplace_back();
         module.symbol = written.symbol;
         for (const std::string_view parameter : written.parameters) {
             const bool is_name = is_cpfg_parameter(parameter);

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "compiler/import/cpfg/system.h"
+#include "compiler/import/l_system.h"
 #include "compiler/import/lpy/python.h"
 
 namespace graftal {
@@ -18,10 +18,10 @@ class LpyStrings {
     /// `A, B(x) : scale = 2` behind the word `module`.
     void declare(std::string_view text);
 
-    CpfgString read(std::string_view text, Span span, const LpyValues& values);
+    LSystemString read(std::string_view text, Span span, const LpyValues& values);
     /// A predecessor or a context. Names of parameters become values; a parameter that is a number asks for
     /// it, which adds to `condition`.
-    CpfgString formals(std::string_view text, Span span, LpyValues& values, std::string& condition);
+    LSystemString formals(std::string_view text, Span span, LpyValues& values, std::string& condition);
 
   private:
     struct Written {

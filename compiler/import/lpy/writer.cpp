@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "compiler/import/cpfg/dialect.h"
-#include "compiler/import/cpfg/names.h"
 #include "compiler/import/cpfg/write/writer.h"
 #include "compiler/import/lpy/system.h"
 #include "compiler/support/number.h"
@@ -40,7 +39,7 @@ class LpyTurtle {
         return std::ranges::find(known, symbol) != std::end(known) ? symbol : std::string();
     }
 
-    std::optional<std::string> told(const CpfgModule& module, Span span) {
+    std::optional<std::string> told(const LSystemModule& module, Span span) {
         const std::string& symbol = module.symbol;
         const std::vector<std::string>& given = module.parameters;
         const std::size_t count = given.size();
@@ -66,8 +65,8 @@ class LpyTurtle {
         }
         if (symbol == "@Ts") {
             if (!std::exchange(bends_, true)) {
-                dialect_.settings.emplace_back("  tropism 0, 1, 0");
-                dialect_.settings.emplace_back("  bending before moves");
+                dialect_.settings.line("  tropism 0, 1, 0");
+                dialect_.settings.line("  bending before moves");
             }
             return fmt::format("T({})", count > 0 ? given[0] : "0");
         }
@@ -143,29 +142,24 @@ class LpyTurtle {
 
 } // namespace
 
-Translation write_lpy(const ForeignFile& file, const ForeignModel& model, CpfgSystem system) {
+Translation write_lpy(const ForeignFile& file, const ForeignModel& model, LSystem system) {
     CpfgDialect dialect;
     LpyTurtle turtle(file, dialect);
     dialect.same = LpyTurtle::same;
-    dialect.told = [&](const CpfgModule& module, Span span) { return turtle.told(module, span); };
+    dialect.told = [&](const LSystemModule& module, Span span) { return turtle.told(module, span); };
     std::string names;
     for (const Rgb& colour : lpy_colours(file.text())) {
-        const std::size_t number = dialect.head.size();
-        dialect.head.push_back(fmt::format("material colour{} {{ color: {}, {}, {} }}", number,
-                                           shortest(colour.r), shortest(colour.g), shortest(colour.b)));
+        const std::size_t number = dialect.head.origins.size();
+        dialect.head.line(fmt::format("material colour{} {{ color: {}, {}, {} }}", number, shortest(colour.r),
+                                      shortest(colour.g), shortest(colour.b)));
         names += fmt::format("{}colour{}", number == 0 ? "" : ", ", number);
     }
-    dialect.settings.push_back("  colors " + names);
+    dialect.angle_deg = turtle_angle_deg;
+    dialect.start = fmt::format(";({})", turtle_colour);
+    dialect.settings.line(fmt::format("  width {}", 2 * turtle_radius));
+    dialect.settings.line("  colors " + names);
     if (system.length.empty()) system.length = "1";
-    CpfgView view;
-    view.angle_deg = turtle_angle_deg;
-    view.width = 2 * turtle_radius;
-    view.width_in_pixels = false;
-    view.has_colour = true;
-    view.colour = turtle_colour;
-    const CpfgSource source;
-    CpfgNames own(file, source, view, &dialect);
-    return write_cpfg_system(own, std::move(system), model, "");
+    return write_dialect(file, std::move(system), model, dialect);
 }
 
 } // namespace graftal

@@ -74,6 +74,25 @@ struct InstRepeat {
     Span span;
 };
 
+/// A list that groups next to each other share: each of a million may stand in hundreds of blocks.
+template<typename T> class InstSharedList {
+  public:
+    InstSharedList() = default;
+    explicit InstSharedList(const std::vector<T>& list)
+        : list_(list.empty() ? nullptr : std::make_shared<const std::vector<T>>(list)) {}
+
+    std::size_t size() const { return list_ ? list_->size() : 0; }
+    bool empty() const { return !list_; }
+    const T* begin() const { return list_ ? list_->data() : nullptr; }
+    const T* end() const { return begin() + size(); }
+    /// Requires that it is not empty, or that there is a place of this number.
+    const T& front() const { return list_->front(); }
+    const T& operator[](std::size_t i) const { return (*list_)[i]; }
+
+  private:
+    std::shared_ptr<const std::vector<T>> list_; ///< null: an empty one
+};
+
 /// `union:`, `intersection:`, `difference:`, `instance:`, a bare name, `terminal:` or `scatter:`, and the
 /// lines after it, which hold for each of its masters, the first line applied first.
 struct InstGroup {
@@ -90,8 +109,8 @@ struct InstGroup {
     std::optional<Expression> chance; ///< of each of the masters
     std::unique_ptr<Expression> hue;  ///< degrees by which the group turns the hues of its masters
     std::vector<InstInkStep> ink;
-    std::vector<InstCondition> conditions;
-    std::vector<std::shared_ptr<const InstRepeat>> repeats; ///< around the group, the outermost first
+    InstSharedList<InstCondition> conditions;
+    InstSharedList<std::shared_ptr<const InstRepeat>> repeats; ///< around the group, the outermost first
     Span span;
 };
 

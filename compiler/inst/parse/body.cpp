@@ -18,6 +18,31 @@ namespace graftal {
 
 namespace {
 
+/// The blocks around the next group, the outermost first.
+template<typename T> class Blocks {
+  public:
+    void push(T block) {
+        blocks_.push_back(std::move(block));
+        shared_.reset();
+    }
+    void pop() {
+        blocks_.pop_back();
+        shared_.reset();
+    }
+    std::size_t size() const { return blocks_.size(); }
+    bool empty() const { return blocks_.empty(); }
+
+    /// The list is shared by all groups until the next change.
+    const InstSharedList<T>& shared() {
+        if (!shared_) shared_.emplace(blocks_);
+        return *shared_;
+    }
+
+  private:
+    std::vector<T> blocks_;
+    std::optional<InstSharedList<T>> shared_;
+};
+
 /// The lines of one object, from its '{' to its '}'.
 class BodyParser {
   public:
@@ -144,9 +169,9 @@ class BodyParser {
                 .with_hint("define an object that contains the inner repeats, and repeat that object");
             return false;
         }
-        repeats_.push_back(std::make_shared<const InstRepeat>(std::move(*repeat)));
+        repeats_.push(std::make_shared<const InstRepeat>(std::move(*repeat)));
         const bool good = parse_repeated();
-        repeats_.pop_back();
+        repeats_.pop();
         return good;
     }
 
@@ -220,9 +245,9 @@ class BodyParser {
         if (!parse_conditional({shared, true})) return false;
         if (!stream_.accept("else")) return true;
         if (stream_.at("when")) { // `else when`: the rest is inside of this one
-            conditions_.push_back({shared, false});
+            conditions_.push({shared, false});
             const bool good = at_when() && parse_when();
-            conditions_.pop_back();
+            conditions_.pop();
             return good;
         }
         return stream_.expect("{", "else") && parse_conditional({shared, false});
@@ -231,11 +256,11 @@ class BodyParser {
     /// Requires that the '{' was just taken.
     bool parse_conditional(InstCondition condition) {
         conditional_ = true;
-        conditions_.push_back(std::move(condition));
+        conditions_.push(std::move(condition));
         sealed_ = true;
         const bool good = !parse_lines("'}' at the end of the groups under a condition");
         sealed_ = true;
-        conditions_.pop_back();
+        conditions_.pop();
         return good;
     }
 
@@ -394,8 +419,8 @@ class BodyParser {
                        fmt::format("a repeat cannot contain a {}", group.terminal ? "terminal" : "scatter"))
                 .with_hint("define an object that has it, and repeat that object");
         }
-        group.conditions = conditions_;
-        group.repeats = repeats_;
+        group.conditions = conditions_.shared();
+        group.repeats = repeats_.shared();
         measure_group();
         group_begin_ = stream_.position();
         definition_.groups.push_back(std::move(group));
@@ -523,11 +548,10 @@ class BodyParser {
     bool closed_ = true;
     std::size_t group_begin_ = 0; ///< of the lines of the last group
     bool sealed_ = false;         ///< after the '{' or '}' of a block of repeated groups, a line has no group
-    std::vector<std::shared_ptr<const InstRepeat>>
-        repeats_;                           ///< repeats around the next group, outermost first
-    std::vector<InstCondition> conditions_; ///< of the next group, the outermost first
-    bool conditional_ = false;              ///< the object may draw nothing
-    bool lost_group_ = false;               ///< the last group was in error
+    Blocks<std::shared_ptr<const InstRepeat>> repeats_; ///< around the next group
+    Blocks<InstCondition> conditions_;                  ///< of the next group
+    bool conditional_ = false;                          ///< the object may draw nothing
+    bool lost_group_ = false;                           ///< the last group was in error
 };
 
 } // namespace

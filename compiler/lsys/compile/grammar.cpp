@@ -223,8 +223,7 @@ class GrammarBuilder {
             rule.left.push_back(pattern(formal, rule));
         for (const LsysFormal& formal : production.right)
             rule.right.push_back(pattern(formal, rule));
-        name_slots(rule);
-        compile(rule);
+        if (name_slots(rule)) compile(rule);
         rule.time = time_of(rule);
         grammar_.in_order |= rule.in_order();
         grammar_.needs_word |= rule.sees_word() || rule.in_order();
@@ -261,21 +260,22 @@ class GrammarBuilder {
             stays.span = source.span;
             LsysRule rule;
             rule.source = &stays;
+            rule.keeps = true;
             rule.predecessor = pattern(stays.predecessor, rule);
-            name_slots(rule);
-            compile(rule);
+            if (name_slots(rule)) compile(rule);
             grammar_.rules[i].stays = static_cast<std::uint32_t>(grammar_.rules.size());
             grammar_.rules.push_back(std::move(rule));
         }
         grammar_.stay_productions = productions;
     }
 
-    /// The names that blocks assign and that mean nothing else are local values.
+    /// The names that blocks assign and that mean nothing else are local values. Of too many it gives some.
     std::vector<const LsysCommand*> locals_of(const std::optional<LsysCommands>& block,
                                               const LsysRule& rule) {
         std::vector<const LsysCommand*> locals;
         if (!block) return locals;
         for_each_assignment(block->list, [&](const LsysCommand& command) {
+            if (locals.size() > max_lsys_parameters) return;
             const std::string_view name = command.target;
             const auto is_known = [&](std::string_view other) { return other == name; };
             const bool known =
@@ -288,17 +288,24 @@ class GrammarBuilder {
         return locals;
     }
 
-    void name_slots(LsysRule& rule) {
+    /// False after the error that there are too many.
+    bool name_slots(LsysRule& rule) {
         locals_ = locals_of(rule.source->before, rule);
         locals_before_ = locals_.size();
         for (const LsysCommand* local : locals_of(rule.source->after, rule))
             if (std::ranges::none_of(locals_, [&](auto* other) { return other->target == local->target; }))
                 locals_.push_back(local);
+        if (locals_.size() > max_lsys_parameters) {
+            diagnostics_.error(locals_[max_lsys_parameters]->span,
+                               fmt::format("a production has at most {} local values", max_lsys_parameters));
+            return false;
+        }
         rule.slots = rule.variables;
         for (const std::string_view name : {"step", "age"})
             rule.slots.push_back(is_taken(name, rule) ? std::string_view() : name);
         for (const LsysCommand* local : locals_)
             rule.slots.push_back(local->target);
+        return true;
     }
 
     /// Names of the model hide those of the time.
@@ -372,14 +379,14 @@ class GrammarBuilder {
                                      return std::ranges::any_of(module.parameters, reads);
                                  });
             if (is_read) continue;
+            Diagnostic& warning = diagnostics_.warning(
+                locals_[i]->span, fmt::format("nothing reads the local value '{}'", locals_[i]->target));
+            if (++idle_locals_ > Diagnostics::max_errors) continue; // nobody sees its hint
             std::vector<std::string> known;
             for (const auto& [name, place] : *grammar_.cells)
                 known.push_back(name);
-            diagnostics_
-                .warning(locals_[i]->span,
-                         fmt::format("nothing reads the local value '{}'", locals_[i]->target))
-                .with_hint(known.empty() ? "a variable keeps its value for others: variable NAME = 0"
-                                         : choices(locals_[i]->target, known));
+            warning.with_hint(known.empty() ? "a variable keeps its value for others: variable NAME = 0"
+                                            : choices(locals_[i]->target, known));
         }
     }
 
@@ -415,19 +422,25 @@ class GrammarBuilder {
         for (const auto& times : grammar_.time_of)
             for (std::size_t symbol = 0; symbol < times.size(); ++symbol)
                 if (times[symbol] & reads_age) grammar_.ages[symbol] = true;
-        while (hand_on_ages()) {
-        }
+        hand_on_ages();
     }
 
-    /// Hands a module's age on to the modules it is drawn as. Whether that gave a symbol an age.
-    bool hand_on_ages() {
-        bool changed = false;
-        for (const LsysRule& rule : grammar_.rules) {
-            if (rule.kind != RuleKind::interpret || grammar_.ages[rule.predecessor.symbol]) continue;
-            changed |= grammar_.ages[rule.predecessor.symbol] = std::ranges::any_of(
-                rule.successor, [&](const LsysTemplate& module) { return grammar_.ages[module.symbol]; });
+    /// A module that is drawn as one with an age has an age too. O(modules of the rules).
+    void hand_on_ages() {
+        std::vector<std::vector<SymbolId>> drawn_as(grammar_.symbols.size());
+        for (const LsysRule& rule : grammar_.rules)
+            if (rule.kind == RuleKind::interpret)
+                for (const LsysTemplate& module : rule.successor)
+                    drawn_as[module.symbol].push_back(rule.predecessor.symbol);
+        std::vector<SymbolId> aged;
+        for (std::size_t symbol = 0; symbol < grammar_.ages.size(); ++symbol)
+            if (grammar_.ages[symbol]) aged.push_back(static_cast<SymbolId>(symbol));
+        while (!aged.empty()) {
+            const SymbolId symbol = aged.back();
+            aged.pop_back();
+            for (const SymbolId whole : drawn_as[symbol])
+                if (!grammar_.ages[whole]) grammar_.ages[whole] = true, aged.push_back(whole);
         }
-        return changed;
     }
 
     void add_filter() {
@@ -460,6 +473,7 @@ class GrammarBuilder {
     std::vector<LsysUse> uses_;              ///< in axiom and successors
     std::vector<const LsysCommand*> locals_; ///< of the rule that is added: the first assignment to each
     std::size_t locals_before_ = 0;          ///< number of locals of its first block
+    std::size_t idle_locals_ = 0;            ///< that were warned of
 };
 
 } // namespace

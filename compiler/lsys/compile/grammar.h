@@ -74,6 +74,7 @@ struct LsysRule {
     static constexpr std::uint32_t none = UINT32_MAX;
     /// With a probability: the rule that leaves its module as it is, for what the probabilities leave.
     std::uint32_t stays = none;
+    bool keeps = false; ///< it is such a rule: its successor is the module itself, with its birth
 
     bool has_context() const { return !left.empty() || !right.empty(); }
     /// Whether one module alone does not tell if it fits.
@@ -156,6 +157,13 @@ struct LsysGrammar {
     bool draws(RuleKind kind) const;
     /// Whether rules of a kind give chance a say.
     bool is_random(RuleKind kind) const;
+    /// Whether the seed may change what it derives.
+    bool asks_chance() const { return is_stochastic || step_draws > 0 || has_queries(); }
+    /// Whether the number of steps may change what it derives.
+    bool grows() const {
+        return has_rules(RuleKind::produce) || has_rules(RuleKind::decompose) || draws_in_time() ||
+               has_queries() || !cells->empty();
+    }
     /// Whether some symbol is a query, which derivation sets.
     bool has_queries() const {
         return uses({TurtleCommand::ask_place, TurtleCommand::ask_heading, TurtleCommand::ask_up,

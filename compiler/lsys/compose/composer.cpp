@@ -21,6 +21,8 @@ constexpr unsigned most_repeated = 1000;
 
 /// A triangle of a skin takes as much work as so many instances.
 constexpr std::size_t instances_a_triangle = 4;
+/// So many vertices of open polygons, which each part around copies, take as much work as an instance.
+constexpr std::size_t vertices_an_instance = 32;
 
 /// Most tries, in all, of productions that wait for their time: some seconds of work.
 constexpr std::uint64_t most_waits = 10'000'000;
@@ -93,7 +95,10 @@ std::optional<TurtlePart> LsysComposer::run_from(Task first) {
     if (context_.skin > 0) whole.turtle.end_limbs();
     if (context_.skin > 0 && !whole.turtle.within_limits(whole.span)) return std::nullopt;
     TurtlePart part = std::move(whole.turtle).finish();
-    if (context_.skin > 0) count_work(part);
+    if (context_.skin > 0)
+        count_work(part);
+    else if (const std::size_t work = new_polygon_work(); work > 0)
+        rewriter_.work_of_part(work);
     tasks_.pop_back();
     return part;
 }
@@ -285,11 +290,18 @@ void LsysComposer::clean_exit(TurtlePart& part) {
     part.exit_scale = sizes_known_.representative(part.exit_scale);
 }
 
-/// Work of a part that is composed, and of the skins of its limbs.
+/// Work of a part that is composed, and of the skins of its limbs and its polygons.
 void LsysComposer::count_work(const TurtlePart& part) {
     const std::size_t before = std::exchange(skin_triangles_, context_.bodies.skin_triangles());
     const std::size_t made = skin_triangles_ - before;
-    rewriter_.work_of_part(part.instances.size() + part.limb_node_count() + instances_a_triangle * made);
+    rewriter_.work_of_part(part.instances.size() + part.limb_node_count() + instances_a_triangle * made +
+                           part.vertex_count() / vertices_an_instance + new_polygon_work());
+}
+
+/// Work of the polygons that have been closed since it was asked for last.
+std::size_t LsysComposer::new_polygon_work() {
+    const std::size_t before = std::exchange(polygon_work_, context_.bodies.polygon_work());
+    return polygon_work_ - before;
 }
 
 /// Places the last task, which has come to its end, in the one before.
@@ -327,10 +339,11 @@ std::optional<Instance> LsysComposer::line_for(const TurtlePart& part, const Tas
 /// Whether there is room for another part. If not, composing gives up, or that is an error.
 bool LsysComposer::has_room(Span span) {
     const std::size_t count = parts_.size();
-    gave_up_ = count >= stop_from_ || (count >= give_up_from_ && few_serve_twice());
+    const bool too_large = parts_.bytes() + pool_.bytes() > max_bytes_;
+    gave_up_ = count >= stop_from_ || (count >= give_up_from_ && few_serve_twice()) ||
+               (too_large && give_up_from_ < SIZE_MAX);
     if (gave_up_) return false;
     const bool hopeless = count >= refuse_from_ && few_serve_twice();
-    const bool too_large = parts_.bytes() + pool_.bytes() > max_bytes_;
     too_many_parts_ = hopeless || too_large || count + tasks_.size() > max_parts_;
     if (!too_many_parts_) return true;
     context_.diagnostics
@@ -363,13 +376,14 @@ bool LsysComposer::start_task(const Lookup& found, Stage stage, const Unfolded& 
                               rewriter_.modules().symbol(module), span, context_.diagnostics);
     if (!has_room(span)) return false;
     const bool interprets = unfolded.kind == RuleKind::interpret;
+    const bool as_old = interprets || unfolded.by->rule->keeps;
     tasks_.push_back({.module = module,
                       .stage = stage,
                       .start = start,
                       .rule = unfolded.by->rule,
                       .string = unfolded.by->successor,
                       .string_stage = unfolded.stage,
-                      .birth = interprets ? start.birth : birth_at(unfolded.stage),
+                      .birth = as_old ? start.birth : birth_at(unfolded.stage),
                       .interprets = interprets,
                       .span = span,
                       .turtle = Turtle(context_, start),
@@ -396,7 +410,7 @@ void LsysComposer::complete_task() {
     clean_exit(part);
     if (witness_) {
         Task& parent = tasks_.back();
-        rewriter_.work_of_part(0);
+        rewriter_.work_of_part(new_polygon_work());
         witness_->enter(parent.frame);
         parent.turtle.append(part, parent.span, task.placing);
         if (task.interprets && !parent.interprets) witness_->ends(parent.turtle);

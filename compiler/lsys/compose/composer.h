@@ -37,7 +37,9 @@ struct LsysLimits {
     std::size_t refuse_from = SIZE_MAX;
     /// With this many parts, composing gives up, whatever the number that serve twice.
     std::size_t stop_from = SIZE_MAX;
-    std::size_t max_bytes = std::size_t{1} << 30; ///< of the parts and their objects; more are an error
+    /// Bytes of the parts and their objects. With more, composing gives up where `give_up_from` lets it; else
+    /// they are an error.
+    std::size_t max_bytes = std::size_t{1} << 30;
     /// Modules that differ in their size only are composed once, and placed as large as they are; null: not.
     const LsysSizes* sizes = nullptr;
     /// With `sizes`, widths and units relative to a part's size are taken for equal where their logarithms
@@ -156,6 +158,7 @@ class LsysComposer {
     bool draw_piece(Task& task, ModuleId piece);
     void clean_exit(TurtlePart& part);
     void count_work(const TurtlePart& part);
+    std::size_t new_polygon_work();
     void complete_piece();
     void complete_task();
     TurtleState state_of(const Turtle& turtle, double& snap);
@@ -181,6 +184,7 @@ class LsysComposer {
     bool steps_unit_;
     bool too_many_parts_ = false;
     std::size_t skin_triangles_ = 0; ///< whose work is counted
+    std::size_t polygon_work_ = 0;   ///< that is counted
     const FoldedWord* word_ = nullptr;
     WordWitness* witness_ = nullptr;
     std::vector<Task> tasks_;

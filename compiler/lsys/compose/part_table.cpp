@@ -16,6 +16,7 @@ void PartTable::add(ModuleId module, Stage stage, const TurtleState& start, Turt
     if (std::ranges::find(reads, part.reads) == reads.end()) reads.push_back(part.reads);
     part_ids_.add(mixed(kind, hash(start, part.reads)), static_cast<std::uint32_t>(parts_.size()));
     limb_nodes_ += part.limb_node_count();
+    vertices_ += part.vertex_count();
     parts_.push_back({kind, start, std::move(part)});
 }
 

@@ -26,8 +26,11 @@ class PartTable {
     const TurtlePart* find(ModuleId module, Stage stage, const TurtleState& start) const;
 
     std::size_t size() const { return parts_.size(); }
-    /// Bytes of the parts and their limbs, without those that they hold elsewhere.
-    std::size_t bytes() const { return parts_.size() * sizeof(KnownPart) + limb_nodes_ * sizeof(LimbNode); }
+    /// Bytes of the parts, of their limbs and of the polygons that they leave open, without those that they
+    /// hold elsewhere.
+    std::size_t bytes() const {
+        return parts_.size() * sizeof(KnownPart) + limb_nodes_ * sizeof(LimbNode) + vertices_ * sizeof(Vec3);
+    }
 
   private:
     struct PartKind {
@@ -47,6 +50,7 @@ class PartTable {
     std::vector<PartKind> kinds_;
     IdTable kind_ids_;
     std::size_t limb_nodes_ = 0;
+    std::size_t vertices_ = 0;
 };
 
 } // namespace graftal

@@ -25,7 +25,7 @@ bool LsysOrderedRewriter::rewrite(const ModuleString& word, ModuleString& next) 
         if (!rule) return false;
         ModuleString& string = decomposes_ ? successor_ : next;
         if (decomposes_) successor_.clear();
-        if (!*rule)
+        if (!*rule || (*rule)->keeps)
             string.push_back(word[at]);
         else if (!rewriter_.append_by(**rule, moment, slots_, string))
             return false;

@@ -28,7 +28,7 @@ LsysStream::LsysStream(LsysRewriter& rewriter, const ModelPlacer& models, Diagno
                        const Options& options)
     : rewriter_(rewriter), grammar_(rewriter.grammar()), models_(models), diagnostics_(diagnostics),
       options_(options), random_(options.seed), chooses_(grammar_.is_random(RuleKind::produce)),
-      in_word_(options.steps + std::size_t{1}) {}
+      in_word_(options.steps + std::size_t{1}), staying_(options.steps + std::size_t{2}) {}
 
 bool LsysStream::derive(Turtle& turtle) {
     turtle_ = &turtle;
@@ -85,17 +85,30 @@ bool LsysStream::meet(const Module& module, std::uint32_t word) {
         const bool waits = grammar_.time(RuleKind::produce, module.symbol) != 0;
         for (; word < options_.steps; ++word) {
             const Moment moment = moment_of(word + 1, module.birth);
-            const std::uint64_t draw = chooses_ ? random_.sequence(word + 1)(in_word_[word]) : 0;
+            const std::uint64_t draw = chooses_ ? random_.sequence(word + 1)(modules_in(word)) : 0;
             Chosen chosen;
             if (!choose_rule(RuleKind::produce, module, moment, draw, chosen)) return false;
             if (!chosen.rule && !waits) break; // a module that none fits now, none will fit later
-            if (++in_word_[word] > options_.max_modules)
+            ++in_word_[word];
+            if (modules_in(word) > options_.max_modules)
                 return refuse_length(grammar_, options_.max_modules, word, diagnostics_);
-            if (!chosen.rule) continue;
+            if (!chosen.rule || chosen.rule->keeps) {
+                rewriter_.work(); // of the next step
+                continue;
+            }
             return push(chosen, module, moment, {.word = word + 1, .birth = word + 1});
         }
     }
     return count_from(word) && emit(module, 0);
+}
+
+/// Modules of the word after that step so far; without chance those that have rules.
+std::uint64_t LsysStream::modules_in(std::uint32_t word) const {
+    std::uint64_t count = in_word_[word];
+    if (chooses_)
+        for (std::size_t i = word + std::size_t{1}; i > 0; i &= i - 1)
+            count += staying_[i];
+    return count;
 }
 
 /// Counts a module that stays as it is from that step on.
@@ -103,8 +116,8 @@ bool LsysStream::count_from(std::uint32_t word) {
     if (++modules_ > options_.max_modules)
         return refuse_length(grammar_, options_.max_modules, options_.steps, diagnostics_);
     if (chooses_)
-        for (std::size_t i = word; i < options_.steps; ++i)
-            ++in_word_[i];
+        for (std::size_t i = word + std::size_t{1}; i < staying_.size(); i += i & (~i + 1))
+            ++staying_[i];
     return true;
 }
 
@@ -153,7 +166,10 @@ bool LsysStream::carry_out(const Module& module) {
     }
     rewriter_.work_of_drawing();
     const bool was_cut = turtle_->passing_over();
+    const std::size_t polygon_work = turtle_->polygon_work();
     if (!turtle_->run(command, parameters(module), model, module.span)) return false;
+    if (const std::size_t more = turtle_->polygon_work() - polygon_work; more > 0)
+        rewriter_.work_of_part(more);
     if (witness_ && was_cut && !turtle_->passing_over()) witness_->closes_branch();
     return true;
 }

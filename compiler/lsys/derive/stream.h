@@ -90,6 +90,7 @@ class LsysStream {
     bool choose_rule(RuleKind kind, const Module& module, const Moment& moment, std::uint64_t draw,
                      Chosen& chosen);
     bool count_from(std::uint32_t word);
+    std::uint64_t modules_in(std::uint32_t word) const;
     std::span<const double> parameters(const Module& module) const {
         return std::span(values_).last(module.arity);
     }
@@ -105,8 +106,12 @@ class LsysStream {
     bool chooses_ = false; ///< by chance, in steps
     std::vector<Frame> frames_;
     std::vector<double> values_; ///< of all frames' names, and of the module under way
-    std::vector<std::uint64_t>
-        in_word_; ///< by step: modules of the word so far; without chance those that have rules
+    /// Modules of the word so far, by step, without those that stay as they are from that step or an earlier
+    /// one on.
+    std::vector<std::uint64_t> in_word_;
+    /// The modules that stay by the step from which on they do, counted where chance is; sums over ranges of
+    /// steps (P. Fenwick 1994), since each counts in all later words.
+    std::vector<std::uint64_t> staying_;
     std::vector<Competitor> competitors_;
     std::uint64_t modules_ = 0;
     std::uint64_t interpreted_ = 0; ///< choices made when drawing

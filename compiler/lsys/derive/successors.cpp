@@ -192,6 +192,7 @@ Fit LsysSuccessors::enter(Outcome& outcome, std::span<const ModuleId> bound) {
         bounds_.insert(bounds_.end(), bound.begin(), bound.end());
         return Fit::yes;
     }
+    if (rule.keeps) alternative.successor.assign(1, bound.front());
     const std::optional<RunId> run = add_successor(alternative.successor, rule);
     if (!run) return Fit::error;
     outcome.run = *run;

@@ -161,7 +161,8 @@ class LsysStatementEnd {
             trailing_ = values_ && c == ',';
             last_ = c;
         }
-        ++at_;
+        // A run of spaces at once: each asks what follows it.
+        at_ = is_space(c) ? scanner_.skip_spaces(at_) : at_ + 1;
     }
 
     /// Parameters have the comments of all languages.

@@ -1,5 +1,6 @@
 #include "compiler/lsys/parse/tables.h"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -22,12 +23,23 @@ void connect_tables(LsysBlock& block, const ExpressionTables& tables) {
         for (SceneField& field : let.fields)
             for (Expression& value : field.values)
                 connect(value);
+    const auto connect_all = [&](std::vector<Expression>& expressions) {
+        std::ranges::for_each(expressions, connect);
+    };
     for (std::optional<LsysValue>* value : {&block.angle, &block.step, &block.width, &block.thickness,
-                                            &block.thinnest, &block.taper, &block.skin})
+                                            &block.thinnest, &block.taper, &block.skin, &block.seed})
         if (*value) connect((*value)->value);
+    if (block.steps && block.steps->value) connect(*block.steps->value);
+    for (LsysDirection& statement : block.tropisms) {
+        connect_all(statement.direction);
+        if (statement.angle) connect(*statement.angle);
+    }
     for (LsysEnvironment& statement : block.environment)
-        for (Expression& number : statement.numbers)
-            connect(number);
+        connect_all(statement.numbers);
+    for (LsysVariable& variable : block.variables) {
+        connect_all(variable.sizes);
+        connect_all(variable.values);
+    }
     for (auto* commands : {&block.start, &block.start_each, &block.end_each, &block.end})
         connect_commands(*commands);
     if (block.axiom) connect_string(*block.axiom);

@@ -23,12 +23,18 @@ namespace {
 /// The thickness of a disc, per diameter.
 constexpr double disc_thickness = 1e-3;
 
+/// Pairs of a polygon's corners that are held against each other in the time of an instance.
+constexpr std::size_t pairs_an_instance = 128;
+
 /// Places the canonical triangle on three corners.
 Affine on_corners(Vec3 a, Vec3 b, Vec3 c) {
     const Vec3 centre = (a + b + c) / 3.0;
     const Vec3 x = (c - b) / std::numbers::sqrt3, y = a - centre;
-    const Vec3 normal = glm::cross(x, y);
-    return {Mat3(x, y, normal / std::sqrt(glm::length(normal))), centre};
+    const double size = std::max(largest_entry(x), largest_entry(y));
+    constexpr double largest = 1e50; // squares of areas are numbers up to here
+    const double unit = size > largest || size < 1 / largest ? size : 1;
+    const Vec3 normal = glm::cross(x / unit, y / unit);
+    return {Mat3(x, y, unit * (normal / std::sqrt(glm::length(normal)))), centre};
 }
 
 /// A round piece, without its ends.
@@ -70,6 +76,7 @@ void TurtleBodies::widen_packed(double factor) {
 
 PackedEdges TurtleBodies::take_packed() {
     if (packed_count() == 0) return {};
+    order_in_space(*run_);
     run_->shrink_to_fit();
     return {std::move(run_), ids_};
 }
@@ -223,6 +230,7 @@ void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, in
 }
 
 void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink) {
+    polygon_work_ += corners.size() * corners.size() / pairs_an_instance;
     if (witness_) {
         std::vector<PlantTriangle> triangles;
         DrawnBody body{.organ = Organ::polygon};

@@ -69,6 +69,9 @@ class TurtleBodies {
 
     std::size_t packed_count() const { return run_ ? run_->size() : 0; } ///< items
     std::size_t skin_triangles() const { return skin_triangles_; }       ///< of all limbs
+    /// Work of cutting all polygons into triangles, which grows with the square of their corners: so many
+    /// instances would take as much.
+    std::size_t polygon_work() const { return polygon_work_; }
     /// Makes packed bodies that are marked by open_width thicker by a factor, and takes the marks away.
     void widen_packed(double factor);
     /// The packed bodies, if there are any. Requires that nothing is added afterwards.
@@ -95,6 +98,7 @@ class TurtleBodies {
     std::unordered_map<std::string, ObjectId> limbs_;    ///< skins, by their names,
     ObjectId known_limbs_ = 0;                           ///< among so many objects of the graph
     std::size_t skin_triangles_ = 0;
+    std::size_t polygon_work_ = 0;
 };
 
 } // namespace graftal

@@ -108,7 +108,7 @@ bool Turtle::widen(double by, Span span) {
 bool Turtle::multiply_angle(double factor, Span span) {
     note(reads_angle);
     const double product = state_.angle_factor * factor;
-    if (std::abs(product) <= largest_size) {
+    if (std::abs(product) <= largest_size && std::isfinite(product * context_.angle_deg)) {
         state_.angle_factor = product;
         writes_ |= reads_angle;
         return true;

@@ -140,6 +140,18 @@ class EarClipper {
 
 std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const Vec3> corners) {
     if (corners.size() < 3) return {};
+    double size = 0;
+    for (const Vec3& corner : corners)
+        size = std::max(size, largest_entry(corner - corners[0]));
+    // Areas are squared: at the ends of the range of numbers a double would not hold that.
+    constexpr double largest = 1e50;
+    if (size > largest || (size > 0 && size < 1 / largest)) {
+        if (!std::isfinite(size)) return {};
+        std::vector<Vec3> of_size_1;
+        for (const Vec3& corner : corners)
+            of_size_1.push_back((corner - corners[0]) / size);
+        return triangulate(of_size_1);
+    }
     const Vec3 normal = newell_normal(corners);
     if (!(glm::length(normal) > 0) || !std::isfinite(glm::length(normal))) return {};
     return EarClipper(corners, normal).run();

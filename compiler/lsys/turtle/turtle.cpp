@@ -43,6 +43,7 @@ const char* size_name(TurtleCommand command) {
         return "a diameter";
     case TurtleCommand::tropism:
     case TurtleCommand::stiffen:
+    case TurtleCommand::bend_down:
         return "an elasticity";
     case TurtleCommand::scale_by:
     case TurtleCommand::scale_down_by:

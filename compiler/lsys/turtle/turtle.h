@@ -78,6 +78,15 @@ struct TurtlePart {
             count += limb.nodes.size();
         return count;
     }
+    /// Vertices of the polygons that begin or end outside of the part.
+    std::size_t vertex_count() const {
+        std::size_t count = vertices.size();
+        for (const PolygonEnd& end : polygon_ends)
+            count += end.vertices.size();
+        for (const std::vector<Vec3>& polygon : polygons)
+            count += polygon.size();
+        return count;
+    }
 };
 
 /// The way in which a part is placed.
@@ -172,6 +181,8 @@ class Turtle {
         return context_.relative_width ? state_.width * scale_ * context_.step * state_.unit : state_.width;
     }
     const Affine& start_from_turtle() const { return start_from_turtle_; }
+    /// Work of all polygons so far, as TurtleBodies counts it.
+    std::size_t polygon_work() const { return context_.bodies.polygon_work(); }
     /// True where modules are cut off: run() and append() pass over them, but watch the brackets.
     bool passing_over() const { return cut_depth_ > 0; }
     /// True if nothing that follows counts.

@@ -52,7 +52,7 @@ class PlacementCount {
     double all_uses_ = 0, counted_uses_ = 0, placements_ = 0;
 };
 
-std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, const Symmetry& symmetry,
+std::optional<Cut> assemble_within(AssemblyLimits& limits, const DetailGraph& cut, const Symmetry& symmetry,
                                    const Projection& projection, const Piece& root, const Choice& choice,
                                    Weights& weights, bool limit_normals, ShellStore& shells,
                                    const SelfShadows* self_shadows) {
@@ -123,7 +123,7 @@ std::optional<Cut> assemble_within(AssemblyLimits& limits, const CutGraph& cut, 
 
 } // namespace
 
-std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
+std::optional<Cut> assemble(const DetailGraph& cut, const Symmetry& symmetry, const Projection& projection,
                             const Piece& root, const Choice& choice, Weights& weights, bool limit_normals,
                             ShellStore& shells, AssemblyLimits& limits, const SelfShadows* self_shadows) {
     try {

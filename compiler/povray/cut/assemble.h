@@ -15,7 +15,7 @@ class ShellStore;
 /// which keeps neighbours together. Nothing if a limit is passed on the way: placements are counted before
 /// they are stored. Takes what was done off the work that is left. `shells`: of this graph. `self_shadows`:
 /// place_pieces()'.
-std::optional<Cut> assemble(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
+std::optional<Cut> assemble(const DetailGraph& cut, const Symmetry& symmetry, const Projection& projection,
                             const Piece& root, const Choice& choice, Weights& weights, bool limit_normals,
                             ShellStore& shells, AssemblyLimits& limits,
                             const SelfShadows* self_shadows = nullptr);

@@ -20,7 +20,7 @@ constexpr std::size_t max_sample_triangles = 200'000;
 constexpr std::uint64_t most_visits = 50 * static_cast<std::uint64_t>(most_leaves);
 
 /// A kind of the node with about the right number of leaves, by levels if the model is cut by levels.
-bool find_sample(Weights& weights, const CutGraph& cut, NodeId node, bool by_levels, PieceKind& sample) {
+bool find_sample(Weights& weights, const DetailGraph& cut, NodeId node, bool by_levels, PieceKind& sample) {
     const std::int32_t whole = PieceKind::step_of(0.5 / cut.nodes[node].ball.radius);
     for (std::int32_t depth = 1; depth < 64; ++depth) {
         sample = {node, unlimited_steps, whole + depth * PieceKind::steps_an_octave / 2};
@@ -34,15 +34,16 @@ bool find_sample(Weights& weights, const CutGraph& cut, NodeId node, bool by_lev
 
 } // namespace
 
-double visible_cube_triangles(const CutGraph& cut, const Symmetry& symmetry, std::uint32_t steps,
+double visible_cube_triangles(const DetailGraph& cut, const Symmetry& symmetry, std::uint32_t steps,
                               std::uint64_t* visits) {
     constexpr double whole_cube = 12;
-    const bool cubes = std::any_of(cut.nodes.begin(), cut.nodes.end(),
-                                   [](const CutNode& node) { return node.primitive == PrimitiveKind::cube; });
+    const bool cubes = std::any_of(cut.nodes.begin(), cut.nodes.end(), [](const DetailNode& node) {
+        return node.primitive == PrimitiveKind::cube;
+    });
     if (!cubes) return whole_cube;
     Weights weights(cut);
     std::set<NodeId> tried;
-    for (const CutEdge& edge : cut.nodes[cut.root].edges) {
+    for (const DetailEdge& edge : cut.nodes[cut.root].edges) {
         const NodeId node = symmetry.representative[edge.child];
         if (tried.size() >= most_samples) break;
         if (!tried.insert(node).second) continue;

@@ -38,14 +38,14 @@ struct MeshKind {
 
 class Chooser {
   public:
-    Chooser(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection, Weights& weights,
+    Chooser(const DetailGraph& cut, const Symmetry& symmetry, const Projection& projection, Weights& weights,
             double most_bytes, WorkMeter* meter)
         : cut_(cut), symmetry_(symmetry), projection_(projection), weights_(weights), most_bytes_(most_bytes),
           placement_bytes_(PovrayCosts::placement +
                            (cut.tinted ? PovrayCosts::own_texture + PovrayCosts::own_layer : 0)),
           placement_text_(SdlLengths::placement + (cut.tinted ? SdlLengths::own_texture : 0)), meter_(meter) {
         const bool crowded = std::ranges::any_of(
-            cut.nodes, [](const CutNode& node) { return node.edges.size() > many_edges; });
+            cut.nodes, [](const DetailNode& node) { return node.edges.size() > many_edges; });
         if (crowded) grain_ = PieceKind::steps_an_octave / coarse_steps_an_octave;
     }
 
@@ -183,11 +183,11 @@ class Chooser {
         placements_ -= bucket.count;
         if (bucket.mesh) drop_mesh(*bucket.mesh, bucket.triangles);
         const bool cut = weights_.is_cut(kind);
-        const CutNode& split_node = cut_.nodes[kind.node];
+        const DetailNode& split_node = cut_.nodes[kind.node];
         const bool real =
             static_cast<double>(bucket.pieces.size()) == bucket.count &&
             placements_ + bucket.count * static_cast<double>(edge_count(split_node, cut)) <= max_real_pieces;
-        for_each_edge(split_node, cut, [&](const CutEdge& edge) {
+        for_each_edge(split_node, cut, [&](const DetailEdge& edge) {
             if (real) {
                 for (const Piece& piece : bucket.pieces)
                     add_piece(descend(cut_, piece, edge, cut));
@@ -213,7 +213,7 @@ class Chooser {
         return choice;
     }
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     const Symmetry& symmetry_;
     const Projection& projection_;
     Weights& weights_;
@@ -237,7 +237,7 @@ class Chooser {
 
 } // namespace
 
-Choice choose_cut(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
+Choice choose_cut(const DetailGraph& cut, const Symmetry& symmetry, const Projection& projection,
                   const Piece& root, Weights& weights, double most_bytes, WorkMeter* meter) {
     return Chooser(cut, symmetry, projection, weights, most_bytes, meter).choose(root);
 }

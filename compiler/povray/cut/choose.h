@@ -26,7 +26,7 @@ struct Choice {
 /// programs spend it on, and what is shortest takes at most a few times the least memory. Pieces are split
 /// heaviest first, as real pieces while there are few, then as counts; the cost of placements only grows, so
 /// the search ends where they alone cost more than the best found. The meter, if any, counts pieces.
-Choice choose_cut(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection,
+Choice choose_cut(const DetailGraph& cut, const Symmetry& symmetry, const Projection& projection,
                   const Piece& root, Weights& weights, double most_bytes, WorkMeter* meter = nullptr);
 
 } // namespace graftal

@@ -12,7 +12,7 @@ std::shared_ptr<const CompiledModel> compile_scene(Session& session, const Stage
     const std::shared_ptr<const ViewedModel> viewed = session.viewed(options, compilation);
     if (!viewed) return nullptr;
     const auto cut = [&]() -> std::optional<Cut> {
-        const std::shared_ptr<const PreparedCut> prepared = session.prepared(options, compilation);
+        const std::shared_ptr<const PreparedGraph> prepared = session.prepared(options, compilation);
         if (!prepared) return std::nullopt;
         return cut_prepared(viewed->model->graph, *prepared, viewed->view, resolved(options.detail, *viewed),
                             compilation.diagnostics, cut_options, session.control());

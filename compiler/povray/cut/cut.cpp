@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/detail/coarser.h"
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/detail/self_shadow.h"
 #include "compiler/detail/shadow/coverage.h"
@@ -46,7 +46,7 @@ std::string readable_count(double count) {
 
 class Cutter {
   public:
-    Cutter(const Graph& graph, const PreparedCut& prepared, const View& view, const DetailOptions& options,
+    Cutter(const Graph& graph, const PreparedGraph& prepared, const View& view, const DetailOptions& options,
            const CutOptions& cut_options, Diagnostics& diagnostics, const Control& control)
         : graph_(graph), view_(view), options_(options), cut_options_(cut_options),
           flattens_(cut_options.flatten || first_combined(graph) < graph.objects.size()),
@@ -311,8 +311,8 @@ class Cutter {
     /// Operands need it: POV-Ray tells what lies in a primitive, and not in a mesh that many are baked into.
     const bool flattens_;
     Diagnostics& diagnostics_;
-    const PreparedCut& prepared_;
-    const CutGraph& cut_;
+    const PreparedGraph& prepared_;
+    const DetailGraph& cut_;
     const Symmetry& symmetry_;
     double cube_triangles_ = 0; ///< visible_cube_triangles(), whatever the error
     int grain_ = 1;             ///< of the last weights
@@ -326,7 +326,7 @@ class Cutter {
 
 } // namespace
 
-std::optional<Cut> cut_prepared(const Graph& graph, const PreparedCut& prepared, const View& view,
+std::optional<Cut> cut_prepared(const Graph& graph, const PreparedGraph& prepared, const View& view,
                                 const DetailOptions& detail, Diagnostics& diagnostics,
                                 const CutOptions& options, const Control& control) {
     return Cutter(graph, prepared, view, detail, options, diagnostics, control).run();

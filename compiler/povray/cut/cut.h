@@ -23,14 +23,14 @@ struct CutOptions {
     bool operator==(const CutOptions&) const = default;
 };
 
-struct PreparedCut;
+struct PreparedGraph;
 
 /// Cuts the graph for the view. Nothing, after an error in `diagnostics`, where the budget cannot be kept
 /// with culling off. A budget that only allows a coarser picture gives that, with a warning that states the
 /// error reached. Requires a verified graph whose contraction is proved or acyclic, which refuse_endless()
 /// lets pass, and which was prepared by detail.preparing(). The control follows the pieces that are chosen,
 /// unfolded and baked, in all tries.
-std::optional<Cut> cut_prepared(const Graph& graph, const PreparedCut& prepared, const View& view,
+std::optional<Cut> cut_prepared(const Graph& graph, const PreparedGraph& prepared, const View& view,
                                 const DetailOptions& detail, Diagnostics& diagnostics,
                                 const CutOptions& options = {}, const Control& control = no_control());
 

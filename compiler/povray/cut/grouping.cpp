@@ -35,7 +35,7 @@ bool share_finish(const Material& a, const Material& b) {
 
 } // namespace
 
-Grouping::Grouping(const CutGraph& cut, const PlacedPieces& pieces, std::vector<Baked>& baked)
+Grouping::Grouping(const DetailGraph& cut, const PlacedPieces& pieces, std::vector<Baked>& baked)
     : cut_(cut), baked_(baked), primitives_(pieces.primitives) {
     for (const TexturedPrimitive& shape : pieces.textured)
         add_textured_body(shape);

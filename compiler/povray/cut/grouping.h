@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/povray/cut/placed.h"
 #include "compiler/povray/cut_parts.h"
 #include "compiler/support/id_table.h"
@@ -18,7 +18,7 @@ namespace graftal {
 class Grouping {
   public:
     /// Takes the meshes, and keeps references. The bodies of primitives with pictures are the first.
-    Grouping(const CutGraph& cut, const PlacedPieces& pieces, std::vector<Baked>& baked);
+    Grouping(const DetailGraph& cut, const PlacedPieces& pieces, std::vector<Baked>& baked);
 
     void add(const Placed& thing);
     void add(const PlacedRuns::Range& range);
@@ -52,7 +52,7 @@ class Grouping {
     std::uint32_t colour(const Rgb& rgb);
     std::uint32_t palette_id(std::uint32_t request, std::uint32_t part, std::uint32_t painter);
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     std::vector<Baked>& baked_;
     const PrimitiveNumbers& primitives_;
     Cut result_;

@@ -53,11 +53,11 @@ struct OperandPiece : Piece {
 /// Depth-first unfolding down to the pieces that become meshes.
 class Placing {
   public:
-    Placing(const CutGraph& cut, const Symmetry& symmetry, const Projection& projection, const Choice& choice,
-            Weights& weights, const SelfShadows* self_shadows, WorkMeter* meter)
+    Placing(const DetailGraph& cut, const Symmetry& symmetry, const Projection& projection,
+            const Choice& choice, Weights& weights, const SelfShadows* self_shadows, WorkMeter* meter)
         : cut_(cut), symmetry_(symmetry), projection_(projection), choice_(choice), weights_(weights),
           self_shadows_(self_shadows), walk_({.meter = meter}), seen_(cut.nodes[cut.root].ball.radius),
-          holds_combined_(std::ranges::any_of(cut.nodes, &CutNode::is_combined)) {}
+          holds_combined_(std::ranges::any_of(cut.nodes, &DetailNode::is_combined)) {}
 
     bool run(const Piece& root, AssemblyLimits& limits) {
         const double most_placements = limits.memory_bytes / PovrayCosts::least_placement;
@@ -81,7 +81,7 @@ class Placing {
     static constexpr double work_of_comparison = 2, work_of_widening = 3, work_of_placing = 2;
 
     void visit(const OperandPiece& piece) {
-        const CutNode& node = cut_.nodes[piece.node];
+        const DetailNode& node = cut_.nodes[piece.node];
         // An operand takes part wherever it lies, and what encloses no volume takes none.
         if (piece.is_of_solid() && is_singular(piece.world_from_node)) return;
         if (!piece.is_of_solid() && !node.unbounded && projection_.drops(world_ball(cut_, piece))) return;
@@ -107,7 +107,7 @@ class Placing {
         const bool combined = node.is_combined() && !(cut && node.terminal);
         std::uint32_t operand = combined ? add_operands(node, cut, piece.operand) : piece.operand;
         bool placeable = true;
-        for_each_edge(node, cut, [&](const CutEdge& edge) {
+        for_each_edge(node, cut, [&](const DetailEdge& edge) {
             OperandPiece child{descend(cut_, piece, edge, cut), operand};
             child.faint = piece.faint || (cut && detail <= 1 && node.shadowless);
             if (cut) child.light_share = light_share(piece, detail);
@@ -122,7 +122,7 @@ class Placing {
     }
 
     /// The number of the first of them.
-    std::uint32_t add_operands(const CutNode& node, bool cut, std::uint32_t holder) {
+    std::uint32_t add_operands(const DetailNode& node, bool cut, std::uint32_t holder) {
         const auto count = static_cast<std::uint32_t>(edge_count(node, cut));
         out_.combined.push_back({node.combination, holder, operands_, count});
         operands_ += count;
@@ -165,7 +165,7 @@ class Placing {
         more_work_ += work_of_placing;
     }
 
-    void place_proxy(const CutNode& node, const OperandPiece& piece, double light_share) {
+    void place_proxy(const DetailNode& node, const OperandPiece& piece, double light_share) {
         OperandPiece proxy = piece;
         proxy.light_share = light_share;
         if (node.finish) proxy.material = node.finish;
@@ -329,7 +329,7 @@ class Placing {
         return place->second;
     }
 
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     const Symmetry& symmetry_;
     const Projection& projection_;
     const Choice& choice_;
@@ -350,7 +350,7 @@ class Placing {
 
 } // namespace
 
-std::optional<PlacedPieces> place_pieces(const CutGraph& cut, const Symmetry& symmetry,
+std::optional<PlacedPieces> place_pieces(const DetailGraph& cut, const Symmetry& symmetry,
                                          const Projection& projection, const Piece& root,
                                          const Choice& choice, Weights& weights, AssemblyLimits& limits,
                                          const SelfShadows* self_shadows) {

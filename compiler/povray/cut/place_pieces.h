@@ -20,7 +20,7 @@ struct AssemblyLimits {
 /// Unfolds the graph down to the pieces that become meshes, depth first. Nothing if a limit is passed on the
 /// way; what was done is taken off the work that is left. Without self_shadows, what is culled has its own
 /// light.
-std::optional<PlacedPieces> place_pieces(const CutGraph& cut, const Symmetry& symmetry,
+std::optional<PlacedPieces> place_pieces(const DetailGraph& cut, const Symmetry& symmetry,
                                          const Projection& projection, const Piece& root,
                                          const Choice& choice, Weights& weights, AssemblyLimits& limits,
                                          const SelfShadows* self_shadows = nullptr);

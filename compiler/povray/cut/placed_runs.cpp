@@ -44,8 +44,8 @@ class Digests {
 
 } // namespace
 
-bool PlacedRuns::can_hold(const CutGraph& cut, const Piece& piece) {
-    const CutNode& node = cut.nodes[piece.node];
+bool PlacedRuns::can_hold(const DetailGraph& cut, const Piece& piece) {
+    const DetailNode& node = cut.nodes[piece.node];
     if (!node.cell || node.textured || node.widens || piece.faint) return false;
     if (piece.material && cut.materials[*piece.material].is_painted()) return false;
     const Vec3 sigma = singular_values(piece.world_from_node.linear);
@@ -65,7 +65,7 @@ void PlacedRuns::add(const Piece& piece, const EdgeCell& cell) {
     ranges_.push_back({cell.source, cell.first, cell.count, piece, nullptr});
 }
 
-double PlacedRuns::sift(const CutGraph& cut, const Projection& projection) {
+double PlacedRuns::sift(const DetailGraph& cut, const Projection& projection) {
     const Digests digests(cut.nodes[cut.root].ball.radius);
     const auto for_each = [&](Range& range, const auto& visit) {
         for (std::size_t i = 0; i < range.count; ++i) {
@@ -92,7 +92,8 @@ double PlacedRuns::sift(const CutGraph& cut, const Projection& projection) {
         auto left_out = std::make_shared<std::vector<bool>>(2 * range.count);
         bool any = false;
         for_each(range, [&](std::size_t part, const RunItem& item, RunShape shape, bool ball) {
-            const CutEdge edge = ball ? edge_to_ball(*range.source, item) : edge_to_body(*range.source, item);
+            const DetailEdge edge =
+                ball ? edge_to_ball(*range.source, item) : edge_to_body(*range.source, item);
             const Ball& unit_ball = cut.nodes[edge.child].ball;
             const Ball about{range.piece.world_from_node(edge.node_from_child(unit_ball.centre)),
                              range.piece.scale * edge.stretch * unit_ball.radius};

@@ -22,7 +22,7 @@ class PlacedRuns {
     };
 
     /// Whether the parts of a cell can be placed as they are: none has a picture, or is to be drawn wider.
-    static bool can_hold(const CutGraph& cut, const Piece& piece);
+    static bool can_hold(const DetailGraph& cut, const Piece& piece);
 
     /// Requires can_hold().
     void add(const Piece& piece, const EdgeCell& cell);
@@ -34,7 +34,7 @@ class PlacedRuns {
     /// Leaves out what is out of sight, if that is asked for, and what coincides with another part: POV-Ray
     /// draws tens of thousands of coincident objects black. Returns the least length that may be seen
     /// (Cut::finest). Takes eight bytes a part until it is done.
-    double sift(const CutGraph& cut, const Projection& projection);
+    double sift(const DetailGraph& cut, const Projection& projection);
 
   private:
     std::vector<Range> ranges_;

@@ -6,6 +6,7 @@
 #include "compiler/povray/emit/names.h"
 #include "compiler/povray/emit/regular_matrix.h"
 #include "compiler/povray/primitives.h"
+#include "compiler/primitives/sheet.h"
 #include "compiler/support/check.h"
 
 namespace graftal {
@@ -38,6 +39,11 @@ PovrayBodies::PovrayBodies(const Cut& cut, const std::string& prefix) : cut_(cut
 bool PovrayBodies::is_plane(std::uint32_t body) const {
     const auto* const primitive = std::get_if<Primitive>(&cut_.bodies[body].shape);
     return primitive && *primitive == PrimitiveKind::plane;
+}
+
+bool PovrayBodies::is_sheet(std::uint32_t body, const Mat3& linear) const {
+    const auto* const primitive = std::get_if<Primitive>(&cut_.bodies[body].shape);
+    return primitive && sheet_of(*primitive, linear);
 }
 
 bool PovrayBodies::declare(SdlWriter& out, ProgressMarks& progress) const {

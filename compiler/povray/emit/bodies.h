@@ -20,6 +20,8 @@ class PovrayBodies {
     /// Number of triangles of the placed meshes.
     std::uint64_t triangle_count() const { return triangle_count_; }
     bool is_plane(std::uint32_t body) const;
+    /// Whether the body is a primitive, and under that map a sheet (sheet.h).
+    bool is_sheet(std::uint32_t body, const Mat3& linear) const;
 
     /// `#declare`s each mesh that is placed; false if the sink stopped.
     bool declare(SdlWriter& out, ProgressMarks& progress) const;

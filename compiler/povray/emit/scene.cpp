@@ -42,6 +42,7 @@ struct Bucket {
     std::vector<Range> ranges;
     std::vector<const PackedPlacements*> packed;
     std::uint64_t count = 0;
+    bool translucent = false; ///< and not transparent, nor an operand's
 };
 
 /// Planes are objects of their own: an infinite part would take a union out of POV-Ray's tree.
@@ -65,6 +66,14 @@ std::optional<Interior> declared_interior(const Material& material) {
     return interior_of(material);
 }
 
+/// The text for sheets, whose two faces are one surface where light comes through: seen from within, each
+/// face is clear. A ray that looks from one face for a light behind the sheet does not end at the other.
+std::string sheet_texture_of(std::string texture) {
+    constexpr std::string_view clear_within = " interior_texture { pigment { rgbt 1 } }", end = " #end";
+    const std::size_t place = texture.ends_with(end) ? texture.size() - end.size() : texture.size();
+    return texture.insert(place, clear_within);
+}
+
 class Emitter {
   public:
     Emitter(const Cut& cut, const PovrayOptions& options, const PovrayUnits& units, const TextSink& sink)
@@ -83,7 +92,10 @@ class Emitter {
     void sort_into_buckets();
     void write_header();
     bool write_objects();
+    template<typename Visit> void for_each_of(const Bucket& bucket, const Visit& visit) const;
     bool write_bucket(const Bucket& bucket, double growth = 0);
+    bool write_union(const Bucket& bucket, std::uint64_t count, const std::string& texture, double growth,
+                     std::optional<bool> sheets);
     bool write_combined(std::uint32_t number, double growth = 0);
     bool write_operand(std::uint32_t operand, double growth);
     Affine grown(std::uint32_t body, double growth) const;
@@ -130,7 +142,10 @@ void Emitter::sort_into_buckets() {
             known == alike.end() ? static_cast<std::uint32_t>(buckets_.size()) : *known;
         if (known == alike.end()) {
             alike.push_back(number);
-            buckets_.push_back({.texture = texture, .interior = interior});
+            buckets_.push_back(
+                {.texture = texture,
+                 .interior = interior,
+                 .translucent = group.material.translucency > 0 && !group.material.is_transparent()});
         }
         Bucket& bucket = buckets_[number];
         std::size_t begin = 0;
@@ -177,26 +192,50 @@ Affine Emitter::grown(std::uint32_t body, double growth) const {
     return Affine::translate(middle) * Affine::scale(Vec3(1 + growth)) * Affine::translate(-middle);
 }
 
+/// Calls `visit(body, world_from_body)` on the placements.
+template<typename Visit> void Emitter::for_each_of(const Bucket& bucket, const Visit& visit) const {
+    for (const Range& range : bucket.ranges)
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            const Placement& placement = cut_.groups[range.group].placements[i];
+            visit(placement.body, placement.world_from_body);
+        }
+    for (const PackedPlacements* const parts : bucket.packed)
+        parts->for_each(
+            [&](const Placement& placement) { visit(placement.body, placement.world_from_body); });
+}
+
+/// Sheets that let light through have a texture of their own.
 bool Emitter::write_bucket(const Bucket& bucket, double growth) {
+    std::uint64_t sheets = 0;
+    if (bucket.translucent)
+        for_each_of(bucket, [&](std::uint32_t body, const Affine& world_from_body) {
+            sheets += bodies_.is_sheet(body, world_from_body.linear) ? 1 : 0;
+        });
     const std::string& texture = texture_texts_[bucket.texture];
+    if (sheets == 0) return write_union(bucket, bucket.count, texture, growth, {});
+    const std::string sheet_texture = sheet_texture_of(texture);
+    if (sheets == bucket.count) return write_union(bucket, sheets, sheet_texture, growth, {});
+    out_ << "union {\n";
+    if (!write_union(bucket, bucket.count - sheets, texture, growth, false)) return false;
+    if (!write_union(bucket, sheets, sheet_texture, growth, true)) return false;
+    out_ << "}\n";
+    return !out_.stopped();
+}
+
+/// `sheets`: only they, or only the others; `count`: of what is to be written.
+bool Emitter::write_union(const Bucket& bucket, std::uint64_t count, const std::string& texture,
+                          double growth, std::optional<bool> sheets) {
     const Affine pov_from_world = units_.pov_from_world();
-    const bool single = bucket.count == 1;
+    const bool single = count == 1;
     if (!single) out_ << "union {\n";
-    const auto write = [&](std::uint32_t body, const Affine& world_from_body) {
+    for_each_of(bucket, [&](std::uint32_t body, const Affine& world_from_body) {
         if (out_.stopped()) return;
+        if (sheets && *sheets != bodies_.is_sheet(body, world_from_body.linear)) return;
         Affine pov_from_body = pov_from_world * world_from_body;
         if (growth > 0) pov_from_body = pov_from_body * grown(body, growth);
         bodies_.place(out_, body, pov_from_body, single ? std::string_view(texture) : std::string_view());
         progress_.step();
-    };
-    for (const Range& range : bucket.ranges)
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            const Placement& placement = cut_.groups[range.group].placements[i];
-            write(placement.body, placement.world_from_body);
-        }
-    for (const PackedPlacements* const parts : bucket.packed)
-        parts->for_each(
-            [&](const Placement& placement) { write(placement.body, placement.world_from_body); });
+    });
     if (!single) out_ << "  " << texture << "\n}\n";
     return !out_.stopped();
 }

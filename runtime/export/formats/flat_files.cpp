@@ -1,5 +1,6 @@
 #include "runtime/export/formats/flat_files.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -18,10 +19,11 @@ constexpr std::uint64_t leaves_a_look = 4096;
 
 } // namespace
 
-MeshSize mesh_size(const SceneShape& shape, bool cornered) {
+MeshSize mesh_size(const SceneShape& shape, bool pictured) {
     const TessellatedPrimitive& mesh = tessellated(shape.primitive, shape.fineness);
-    const std::uint64_t triangles = mesh.triangles.size();
-    return {cornered || mesh.normals.empty() ? 3 * triangles : mesh.vertices.size(), triangles};
+    const std::uint64_t vertices = mesh.vertices.size(), triangles = mesh.triangles.size();
+    if (pictured) return {std::min(vertices, 3 * triangles), triangles};
+    return {mesh.normals.empty() ? 3 * triangles : vertices, triangles};
 }
 
 bool has_pictures(const UnfoldedScene& scene) {
@@ -31,9 +33,11 @@ bool has_pictures(const UnfoldedScene& scene) {
 
 bool refuse_size(const ExportJob& job, const std::function<std::uint64_t(const SceneShape&)>& bytes) {
     const BigCount size = sum_over_leaves(job.scene, bytes);
-    const bool cornered = has_pictures(job.scene);
-    const BigCount vertices = sum_over_leaves(
-        job.scene, [&](const SceneShape& shape) { return mesh_size(shape, cornered).vertices; });
+    const bool pictured = has_pictures(job.scene);
+    const BigCount vertices = sum_over_leaves(job.scene, [&](const SceneShape& shape) {
+        const MeshSize mesh = mesh_size(shape, pictured);
+        return pictured ? 3 * mesh.triangles : mesh.vertices;
+    });
     if (size <= job.options.most_bytes && vertices < UINT32_MAX) return false;
     const BigCount leaves = sum_over_leaves(job.scene, [](const SceneShape&) { return 1; });
     const BigCount triangles =

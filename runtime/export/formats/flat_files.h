@@ -13,11 +13,11 @@ struct MeshSize {
     std::uint64_t vertices = 0, triangles = 0;
 };
 
-/// Numbers of a shape's mesh as ShapeMeshes has it where `cornered`: each triangle has its own corners. Else
-/// the numbers are lower bounds.
-MeshSize mesh_size(const SceneShape& shape, bool cornered);
+/// Numbers of a shape's mesh as ShapeMeshes has it. Where it may be `pictured`, it has that many vertices
+/// about, and no more than three a triangle: seams divide some, equal corners become one.
+MeshSize mesh_size(const SceneShape& shape, bool pictured);
 
-/// Whether some material of the model has a picture, so that triangles may have their own corners.
+/// Whether some material of the model has a picture, so that triangles on both sides of a seam differ.
 bool has_pictures(const UnfoldedScene& scene);
 
 /// Refuses a file of more bytes than allowed, or of more vertices than its numbers count. The error states

@@ -524,7 +524,10 @@ template<bool binary> Status write_gltf(const ExportJob& job, ExportReport& repo
     GltfWriter writer(job, *scene, std::move(*held));
     Status made = writer.make();
     if (!made.ok() || job.diagnostics.has_errors()) return made;
-    OutputFile file(job.options.output, job.options.most_bytes, job.too_large);
+    // The head of a binary file states its length in 32 bits.
+    const std::uint64_t most_bytes =
+        binary ? std::min<std::uint64_t>(job.options.most_bytes, UINT32_MAX) : job.options.most_bytes;
+    OutputFile file(job.options.output, most_bytes, job.too_large);
     if (!file.ok()) return file.status();
     writer.write(file, binary);
     Status status = file.close();

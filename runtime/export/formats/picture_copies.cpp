@@ -1,7 +1,9 @@
 #include "runtime/export/formats/picture_copies.h"
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -45,14 +47,24 @@ std::string PictureCopies::stem(const Material& material) {
     return stem;
 }
 
-/// The name of a picture begins with that of the file, so that no picture of the model is lost to its copy.
+/// The name of a picture begins with that of the file, and is that of no picture of the model: none of these
+/// is lost to a copy.
 std::string PictureCopies::unused(const std::string& stem, std::string_view ending) {
     const std::string first =
         fmt::format("{}_{}", std::filesystem::path(job_.options.output).stem().string(), stem);
     std::string name = first;
-    for (int number = 2; !used_.insert(name).second; ++number)
+    for (int number = 2; is_of_model(name + std::string(ending)) || !used_.insert(name).second; ++number)
         name = fmt::format("{}_{}", first, number);
     return name.append(ending);
+}
+
+/// Whether a file of this name beside the output is a picture that the model names.
+bool PictureCopies::is_of_model(const std::string& name) const {
+    const std::filesystem::path path = std::filesystem::path(job_.options.output).parent_path() / name;
+    return std::ranges::any_of(job_.scene.materials, [&](const Material& material) {
+        std::error_code error;
+        return !material.texture.empty() && std::filesystem::equivalent(path, material.texture, error);
+    });
 }
 
 PendingFile& PictureCopies::begin(const std::string& name) {

@@ -38,6 +38,7 @@ class PictureCopies {
 
   private:
     std::string unused(const std::string& stem, std::string_view ending);
+    bool is_of_model(const std::string& name) const;
     PendingFile& begin(const std::string& name);
 
     const ExportJob& job_;

@@ -2,43 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <map>
+#include <functional>
+#include <queue>
 #include <set>
-#include <unordered_map>
 
 namespace graftal {
 
 namespace {
 
-using PenCell = std::array<std::int64_t, 2>;
-
-struct PenCellHash {
-    std::size_t operator()(const PenCell& cell) const {
-        return static_cast<std::size_t>(cell[0]) * 0x9E3779B97F4A7C15ull ^
-               static_cast<std::size_t>(cell[1]) * 0xC2B2AE3D27D4EB4Full;
-    }
-};
-
 double pen_distance(const Point2& a, const Point2& b) {
     return std::hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-/// The ends of strokes by cells of a grid, about one a cell.
+/// The ends of strokes in a tree of boxes, each cut in the middle of its ends: however they are spread, it is
+/// as deep as the logarithm of their number.
 class StrokeEnds {
   public:
-    StrokeEnds(const std::vector<PenStroke>& strokes, double cell) : strokes_(strokes), cell_(cell) {
+    explicit StrokeEnds(const std::vector<PenStroke>& strokes) : strokes_(strokes), left_(strokes.size()) {
         for (std::size_t i = 0; i < strokes.size(); ++i)
             for (const bool last : {false, true})
-                cells_[cell_of(end(i, last))].push_back({i, last});
-        left_ = strokes.size();
-        low_ = {INT64_MAX, INT64_MAX};
-        high_ = {INT64_MIN, INT64_MIN};
-        for (const auto& [key, ends] : cells_)
-            for (std::size_t axis = 0; axis < 2; ++axis) {
-                low_[axis] = std::min(low_[axis], key[axis]);
-                high_[axis] = std::max(high_[axis], key[axis]);
-            }
+                ends_.push_back({i, last});
+        leaf_of_.resize(ends_.size());
+        grow(0, ends_.size(), nowhere);
     }
 
     struct End {
@@ -50,87 +37,150 @@ class StrokeEnds {
 
     /// The nearest end; of equally near ones the first. Requires that one is left.
     End nearest(const Point2& from) const {
-        const PenCell centre = cell_of(from);
-        End best;
-        double least = HUGE_VAL;
-        const std::int64_t most = std::max({centre[0] - low_[0], high_[0] - centre[0], centre[1] - low_[1],
-                                            high_[1] - centre[1], std::int64_t{0}});
-        for (std::int64_t ring = 0; ring <= most && least > static_cast<double>(ring - 1) * cell_; ++ring)
-            for (std::int64_t x = -ring; x <= ring; ++x) {
-                const bool side = x == -ring || x == ring;
-                for (std::int64_t y = -ring; y <= ring; y += side || ring == 0 ? 1 : 2 * ring)
-                    look({centre[0] + x, centre[1] + y}, from, best, least);
+        Found found;
+        // The nearest boxes first: one whose ends near the pen are taken holds up no other.
+        std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> waiting;
+        const auto wait = [&](std::size_t number_of_node) {
+            const Node& node = nodes_[number_of_node];
+            if (node.left > 0) waiting.push({distance(node, from), node.first, number_of_node});
+        };
+        wait(0);
+        constexpr double rounding = 1 + 1e-12;
+        for (; !waiting.empty() && waiting.top().distance <= rounding * found.distance;) {
+            const Waiting at = waiting.top();
+            waiting.pop();
+            const Node& node = nodes_[at.node];
+            // Many ends may be one point.
+            if (node.low == node.high && at.distance >= found.distance && at.first > number(found.end))
+                continue;
+            if (node.halves[0] != nowhere) {
+                wait(node.halves[0]);
+                wait(node.halves[1]);
+                continue;
             }
-        return best;
+            for (std::size_t i = node.begin; i < node.end; ++i)
+                if (!taken_[ends_[i].stroke]) look_at(ends_[i], from, found);
+        }
+        return found.end;
     }
 
+    /// Requires that the stroke is left.
     void take(std::size_t stroke) {
         for (const bool last : {false, true})
-            std::erase_if(cells_[cell_of(end(stroke, last))],
-                          [&](const End& candidate) { return candidate.stroke == stroke; });
+            for (std::size_t node = leaf_of_[number({stroke, last})]; node != nowhere;
+                 node = nodes_[node].parent)
+                --nodes_[node].left;
+        taken_[stroke] = true;
         --left_;
     }
 
   private:
-    const Point2& end(std::size_t stroke, bool last) const {
-        return last ? strokes_[stroke].back() : strokes_[stroke].front();
+    static constexpr std::size_t nowhere = SIZE_MAX, ends_of_leaf = 8;
+
+    struct Node {
+        std::size_t begin = 0, end = 0; ///< of ends_
+        std::size_t parent = nowhere;
+        std::array<std::size_t, 2> halves{nowhere, nowhere}; ///< none in a leaf
+        Point2 low{}, high{};
+        std::size_t left = 0;  ///< ends in it that are not taken
+        std::size_t first = 0; ///< the least number of its ends
+    };
+    struct Found {
+        End end;
+        double distance = HUGE_VAL;
+    };
+    struct Waiting {
+        double distance = 0;
+        std::size_t first = 0, node = 0;
+        auto operator<=>(const Waiting&) const = default;
+    };
+
+    static std::size_t number(const End& end) { return 2 * end.stroke + (end.last ? 1 : 0); }
+
+    const Point2& place(const End& end) const {
+        return end.last ? strokes_[end.stroke].back() : strokes_[end.stroke].front();
     }
 
-    PenCell cell_of(const Point2& p) const {
-        return {static_cast<std::int64_t>(std::floor(p[0] / cell_)),
-                static_cast<std::int64_t>(std::floor(p[1] / cell_))};
-    }
-
-    void look(const PenCell& cell, const Point2& from, End& best, double& least) const {
-        const auto known = cells_.find(cell);
-        if (known == cells_.end()) return;
-        for (const End& candidate : known->second) {
-            const double away = pen_distance(from, end(candidate.stroke, candidate.last));
-            const bool earlier = candidate.stroke < best.stroke ||
-                                 (candidate.stroke == best.stroke && !candidate.last && best.last);
-            if (away < least || (away == least && earlier)) {
-                least = away;
-                best = candidate;
+    /// A node of these ends, whose number it returns.
+    std::size_t grow(std::size_t begin, std::size_t end, std::size_t parent) {
+        const std::size_t made = nodes_.size();
+        Node node;
+        node.begin = begin;
+        node.end = end;
+        node.parent = parent;
+        node.low = node.high = place(ends_[begin]);
+        node.left = end - begin;
+        node.first = number(ends_[begin]);
+        for (std::size_t i = begin; i < end; ++i) {
+            node.first = std::min(node.first, number(ends_[i]));
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                node.low[axis] = std::min(node.low[axis], place(ends_[i])[axis]);
+                node.high[axis] = std::max(node.high[axis], place(ends_[i])[axis]);
             }
         }
+        nodes_.push_back(node);
+        if (end - begin <= ends_of_leaf) {
+            for (std::size_t i = begin; i < end; ++i)
+                leaf_of_[number(ends_[i])] = made;
+            return made;
+        }
+        const std::size_t axis = node.high[0] - node.low[0] < node.high[1] - node.low[1] ? 1 : 0;
+        const std::size_t middle = begin + (end - begin) / 2;
+        const auto at = [&](std::size_t i) { return ends_.begin() + static_cast<std::ptrdiff_t>(i); };
+        std::nth_element(at(begin), at(middle), at(end), [&](const End& a, const End& b) {
+            return place(a)[axis] != place(b)[axis] ? place(a)[axis] < place(b)[axis] : number(a) < number(b);
+        });
+        const std::size_t first = grow(begin, middle, made), second = grow(middle, end, made);
+        nodes_[made].halves = {first, second};
+        return made;
+    }
+
+    double distance(const Node& node, const Point2& from) const {
+        Point2 away{};
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            away[axis] = std::max({node.low[axis] - from[axis], from[axis] - node.high[axis], 0.0});
+        return std::hypot(away[0], away[1]);
+    }
+
+    void look_at(const End& end, const Point2& from, Found& found) const {
+        const double away = pen_distance(from, place(end));
+        if (away < found.distance || (away == found.distance && number(end) < number(found.end)))
+            found = {end, away};
     }
 
     const std::vector<PenStroke>& strokes_;
-    double cell_;
-    std::unordered_map<PenCell, std::vector<End>, PenCellHash> cells_;
-    PenCell low_{}, high_{};
-    std::size_t left_ = 0;
+    std::vector<End> ends_;
+    std::vector<std::size_t> leaf_of_; ///< by the number of an end
+    std::vector<Node> nodes_;          ///< the whole first
+    std::vector<bool> taken_ = std::vector<bool>(strokes_.size(), false);
+    std::size_t left_;
 };
 
 /// Points in whole tolerances: what is equal in these is one.
-std::vector<PenCell> rounded_points(const PenStroke& stroke, double tolerance) {
-    std::vector<PenCell> points;
+std::vector<Point2> rounded_points(const PenStroke& stroke, double tolerance) {
+    std::vector<Point2> points;
     for (const Point2& p : stroke)
-        points.push_back({std::llround(p[0] / tolerance), std::llround(p[1] / tolerance)});
+        points.push_back({std::round(p[0] / tolerance), std::round(p[1] / tolerance)});
     return points;
 }
 
 } // namespace
 
 std::vector<PenStroke> pen_path(std::vector<PenStroke> strokes, double tolerance) {
-    std::set<std::vector<PenCell>> drawn;
+    std::set<std::vector<Point2>> drawn;
     std::erase_if(strokes, [&](const PenStroke& stroke) {
         if (stroke.empty()) return true;
-        std::vector<PenCell> there = rounded_points(stroke, tolerance), back = there;
+        std::vector<Point2> there = rounded_points(stroke, tolerance), back = there;
         std::ranges::reverse(back);
         return !drawn.insert(std::min(there, back)).second;
     });
     if (strokes.empty()) return strokes;
-    Point2 low = strokes.front().front(), high = low;
+    Point2 low = strokes.front().front();
     for (const PenStroke& stroke : strokes)
         for (const Point2& p : stroke)
-            for (std::size_t axis = 0; axis < 2; ++axis) {
+            for (std::size_t axis = 0; axis < 2; ++axis)
                 low[axis] = std::min(low[axis], p[axis]);
-                high[axis] = std::max(high[axis], p[axis]);
-            }
-    const double extent = std::max(high[0] - low[0], high[1] - low[1]);
-    const double cell = std::max(extent / std::sqrt(static_cast<double>(strokes.size())), tolerance);
-    StrokeEnds ends(strokes, cell);
+    StrokeEnds ends(strokes);
     std::vector<PenStroke> path;
     Point2 pen = low;
     while (!ends.empty()) {

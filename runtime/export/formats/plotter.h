@@ -11,7 +11,7 @@ using PenStroke = std::vector<Point2>;
 
 /// Puts strokes that go on from each other together, and drops those that are drawn already. Orders and
 /// turns the rest: a lifted pen goes to the nearest end that is left. `tolerance`: ends that are no farther
-/// apart are one. O(n log n) where ends are spread evenly.
+/// apart are one. Takes about n log n steps for n strokes, however they are spread.
 std::vector<PenStroke> pen_path(std::vector<PenStroke> strokes, double tolerance);
 
 /// Length of the pen's way while it is lifted, from the first stroke on.

@@ -16,8 +16,8 @@ Status write_ply_mesh(const ExportJob& job, ExportReport& report) {
         return size.vertices * vertex_bytes + size.triangles * ply_triangle_bytes;
     };
     if (refuse_range(job, 1) || refuse_size(job, bytes)) return {};
-    // The head states numbers that the walk finds: where pictures give triangles their own corners, no sum
-    // over shapes knows them.
+    // The head states numbers that the walk finds: no sum over shapes knows how many corners
+    // the seams of pictures divide.
     ShapeMeshes meshes(job.scene);
     std::uint64_t vertices = 0, triangles = 0;
     OutputFile file(job.options.output, job.options.most_bytes, job.too_large);

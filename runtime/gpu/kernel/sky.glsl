@@ -78,26 +78,21 @@ bool has_bright_sky() {
     return scene.picture_from_world[2].w > 0.0f;
 }
 
-/// A number of the sums of chances: rows follow the texels, and columns these.
-uint first_sum() {
+/// Where the sums of chances begin in texels[]: those of rows, and those of the columns within a row.
+uint row_sums() {
     return picture_texel(0, int(scene.picture_from_world[1].w));
 }
 
-float row_sum(int row) {
-    return texels(first_sum() + uint(row));
+uint column_sums(int row) {
+    return row_sums() + uint(scene.picture_from_world[1].w) + uint(row) * uint(scene.picture_from_world[0].w);
 }
 
-float column_sum(int row, int column) {
-    const uint width = uint(scene.picture_from_world[0].w), height = uint(scene.picture_from_world[1].w);
-    return texels(first_sum() + height + uint(row) * width + uint(column));
+float sum_before(uint sums, int number) {
+    return number > 0 ? texels(sums + uint(number) - 1u) : 0.0f;
 }
 
-float row_chance(int row) {
-    return row > 0 ? row_sum(row) - row_sum(row - 1) : row_sum(0);
-}
-
-float column_chance(int row, int column) {
-    return column > 0 ? column_sum(row, column) - column_sum(row, column - 1) : column_sum(row, 0);
+float chance_of(uint sums, int number) {
+    return texels(sums + uint(number)) - sum_before(sums, number);
 }
 
 /// The number between -1 and 1 that one in [0, 1) chooses, with a density of 1 - |x|.
@@ -105,34 +100,29 @@ float tent(float place) {
     return place < 0.5f ? sqrt(2.0f * place) - 1.0f : 1.0f - sqrt(2.0f * (1.0f - place));
 }
 
+/// The first of `count` numbers whose sum is above a place in [0, 1), and a place about its middle by chance.
+float chosen_by(uint sums, int count, float place, OUT(int) number) {
+    int low = 0, high = count - 1;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (texels(sums + uint(middle)) > place)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    number = low;
+    const float begin = sum_before(sums, number);
+    const float share = clamp((place - begin) / (texels(sums + uint(number)) - begin), 0.0f, 1.0f);
+    return float(number) + 0.5f + tent(share);
+}
+
 /// A direction by chance, by SkySampling::direction().
 vec3 bright_sky_direction(vec2 place) {
     const int width = int(scene.picture_from_world[0].w), height = int(scene.picture_from_world[1].w);
-    int low = 0, high = height - 1;
-    while (low < high) { // the first row whose sum is above
-        const int middle = (low + high) / 2;
-        if (row_sum(middle) > place.y)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    const int row = low;
-    low = 0;
-    high = width - 1;
-    while (low < high) {
-        const int middle = (low + high) / 2;
-        if (column_sum(row, middle) > place.x)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    const int column = low;
-    const float row_begin = row > 0 ? row_sum(row - 1) : 0.0f,
-                column_begin = column > 0 ? column_sum(row, column - 1) : 0.0f;
-    const float down = clamp((place.y - row_begin) / (row_sum(row) - row_begin), 0.0f, 1.0f);
-    const float right = clamp((place.x - column_begin) / (column_sum(row, column) - column_begin), 0.0f, 1.0f);
-    const float u = (float(column) + 0.5f + tent(right)) / float(width);
-    float v = abs((float(row) + 0.5f + tent(down)) / float(height));
+    int row;
+    int column;
+    float v = abs(chosen_by(row_sums(), height, place.y, row) / float(height));
+    const float u = chosen_by(column_sums(row), width, place.x, column) / float(width);
     if (v > 1.0f) v = 2.0f - v;
     const float y = cos(PI * v), turn = 2.0f * PI * (u - 0.5f), radius = sqrt(max(0.0f, 1.0f - y * y));
     const vec3 d = vec3(radius * cos(turn), y, radius * sin(turn));
@@ -145,10 +135,11 @@ vec3 bright_sky_direction(vec2 place) {
 float bright_sky_density(vec3 direction) {
     const vec3 d = to_picture(direction);
     const TexelMix about = texels_about(place_in_picture(d));
-    const float high = row_chance(about.y0) * mix(column_chance(about.y0, about.x0),
-                                                  column_chance(about.y0, about.x1), about.right);
-    const float low = row_chance(about.y1) * mix(column_chance(about.y1, about.x0),
-                                                 column_chance(about.y1, about.x1), about.right);
+    const uint first = column_sums(about.y0), second = column_sums(about.y1);
+    const float high = chance_of(row_sums(), about.y0) *
+                       mix(chance_of(first, about.x0), chance_of(first, about.x1), about.right);
+    const float low = chance_of(row_sums(), about.y1) *
+                      mix(chance_of(second, about.x0), chance_of(second, about.x1), about.right);
     const float sine = max(length(vec2(d.x, d.z)), 1e-6f);
     return mix(high, low, about.down) * scene.picture_from_world[0].w * scene.picture_from_world[1].w /
            (2.0f * PI * PI * sine);

@@ -96,10 +96,11 @@ std::vector<ShownTile> tiles_of_picture(const Image& developed, int pass) {
 
 ProgressivePicture::ProgressivePicture(PreparedView prepared, const PictureWishes& wishes,
                                        std::function<const Workers&()> workers,
-                                       std::shared_ptr<TraceGround> ground, double seconds_a_sample)
-    : prepared_(std::move(prepared)), wishes_(wishes), workers_(std::move(workers)),
-      plan_(plan_picture(prepared_, wishes)), ground_(std::move(ground)),
-      seconds_a_sample_(seconds_a_sample) {}
+                                       std::shared_ptr<TraceBasis> basis, double seconds_a_sample,
+                                       PicturePasses passes)
+    : prepared_(std::move(prepared)), wishes_(wishes), workers_(std::move(workers)), passes_(passes),
+      plan_(plan_picture(prepared_, wishes)), basis_(std::move(basis)),
+      phase_(passes == PicturePasses::all ? Phase::begin : Phase::fit), seconds_a_sample_(seconds_a_sample) {}
 
 bool ProgressivePicture::step(const std::function<bool()>& cancelled, const std::function<bool()>& for_good,
                               const PictureListener& listener) try {
@@ -139,10 +140,9 @@ void ProgressivePicture::begin(const std::function<bool()>& cancelled,
         }
         // Bounds and shadows take shares of the work, and nothing ends them early.
         options.work_seconds = std::min(options.work_seconds, rough_work_seconds);
-        if (!ground_)
-            ground_ = std::make_shared<TraceGround>(*prepared_.prepared, options.work_seconds, cancel);
-        rough_ = std::make_unique<TraceModel>(prepared_.prepared, view(), options, prepared_.textures,
-                                              ground_, cancel);
+        if (!basis_) basis_ = std::make_shared<TraceBasis>(*prepared_.prepared, options.work_seconds, cancel);
+        rough_ = std::make_unique<TraceModel>(prepared_.prepared, view(), options, prepared_.textures, basis_,
+                                              cancel);
         rough_->most_visits = std::min(rough_->most_visits, rough_visits);
     }
     if (!(seconds_a_sample_ > 0)) probe(cancelled, for_good);
@@ -245,7 +245,16 @@ void ProgressivePicture::end_pass(const PictureListener& listener) {
         queue_.pop_back();
     }
     shown.done = phase_ == Phase::done;
+    if (shown.done) shown.whole_seconds = seconds_of_whole();
     listener.on_pass(shown);
+}
+
+/// Nothing where the picture is as fine as it was asked for.
+std::optional<double> ProgressivePicture::seconds_of_whole() const {
+    const bool is_coarser =
+        fitted_.sampling != plan_.wanted || fitted_.rays_cut || fitted_.error_px > plan_.detail.error_px;
+    if (!is_coarser) return std::nullopt;
+    return fitted_.whole_seconds / workers_().count();
 }
 
 /// The last pass is there, noise and all.
@@ -316,6 +325,7 @@ void ProgressivePicture::denoise_all(const std::function<bool()>& cancelled,
     shown.noise_255 = denoised.mean_error_255();
     if (fitted_.model->options.culls()) shown.error_px = fitted_.model->projection.error_px();
     shown.done = true;
+    shown.whole_seconds = seconds_of_whole();
     listener.on_pass(shown);
 }
 
@@ -340,8 +350,13 @@ void ProgressivePicture::fit(const std::function<bool()>& for_good) {
 
 void ProgressivePicture::plan_fine() {
     phase_ = Phase::fine;
-    const Sampling& finest = fitted_.sampling;
-    queue_ = {finest};
+    queue_ = {fitted_.sampling};
+    if (passes_ == PicturePasses::all) queue_passes_before(fitted_.sampling);
+    start_pass(queue_.back());
+    queue_.pop_back();
+}
+
+void ProgressivePicture::queue_passes_before(const Sampling& finest) {
     if (finest.most_samples > 0) {
         Sampling fewer = finest;
         for (int count = finest.most_samples / growth_of_samples; count > 0; count /= growth_of_samples) {
@@ -352,8 +367,6 @@ void ProgressivePicture::plan_fine() {
         queue_.push_back({});
     }
     if (finest.block == 1) queue_.push_back({.block = 2});
-    start_pass(queue_.back());
-    queue_.pop_back();
 }
 
 } // namespace graftal

@@ -29,7 +29,13 @@ struct ShownPass {
     std::optional<double> noise_255;    ///< mean of the pixels that have two samples or more
     double error_px = 0;                ///< of parts that are left out
     bool done = false;
+    /// About the seconds, with all workers, of the picture as it was asked for, at a last pass that is
+    /// coarser since the work allowed does not suffice.
+    std::optional<double> whole_seconds;
 };
+
+/// The passes that somebody wants to see.
+enum class PicturePasses { all, last };
 
 /// The tiles of a whole picture that is developed already.
 std::vector<ShownTile> tiles_of_picture(const Image& developed, int pass);
@@ -45,12 +51,11 @@ struct PictureListener {
 /// passes are. The last passes depend on no clock.
 class ProgressivePicture {
   public:
-    /// `workers` is asked for at each piece. `ground`: of the rough
-    /// model of the same prepared graph, or null.
+    /// `workers` is asked for at each piece. `basis`: of the rough model of the same prepared graph, or null.
     /// `seconds_a_sample`: of the rough passes of a picture like this one; 0: nobody knows.
     ProgressivePicture(PreparedView prepared, const PictureWishes& wishes,
-                       std::function<const Workers&()> workers, std::shared_ptr<TraceGround> ground = nullptr,
-                       double seconds_a_sample = 0);
+                       std::function<const Workers&()> workers, std::shared_ptr<TraceBasis> basis = nullptr,
+                       double seconds_a_sample = 0, PicturePasses passes = PicturePasses::all);
 
     /// Does the next piece. `cancelled` is asked before each ray, by all workers; a piece that it ends is
     /// done again, apart from samples that are there. False: the picture was finished already. `for_good`
@@ -65,7 +70,7 @@ class ProgressivePicture {
     bool is_rough() const { return phase_ == Phase::begin || phase_ == Phase::rough; }
     /// Passes that are complete.
     int passes() const { return pass_; }
-    const std::shared_ptr<TraceGround>& ground() const { return ground_; }
+    const std::shared_ptr<TraceBasis>& basis() const { return basis_; }
     const PreparedView& prepared() const { return prepared_; }
     /// The model that rays go through now; null before the first step.
     const TraceModel* model() const { return fitted_.model ? fitted_.model.get() : rough_.get(); }
@@ -89,8 +94,10 @@ class ProgressivePicture {
                       const PictureListener& listener);
     void denoise_all(const std::function<bool()>& cancelled, const PictureListener& listener);
     void finish();
+    std::optional<double> seconds_of_whole() const;
     void plan_rough();
     void plan_fine();
+    void queue_passes_before(const Sampling& finest);
     void start_pass(const Sampling& sampling);
     void show(const Window& window, const Image& picture, const PictureListener& listener) const;
     double seconds_of(const Sampling& sampling) const;
@@ -99,11 +106,12 @@ class ProgressivePicture {
     PreparedView prepared_;
     PictureWishes wishes_;
     std::function<const Workers&()> workers_;
+    PicturePasses passes_;
     PicturePlan plan_;
-    std::shared_ptr<TraceGround> ground_;
+    std::shared_ptr<TraceBasis> basis_;
     std::unique_ptr<TraceModel> rough_;
     FittedModel fitted_;
-    Phase phase_ = Phase::begin;
+    Phase phase_;
     std::vector<Sampling> queue_; ///< passes of this phase, the next one last
     std::optional<Sampling> sampling_;
     std::vector<Window> windows_; ///< of fine passes, from the middle outwards

@@ -1,5 +1,6 @@
 #include "runtime/studio/server/page_session.h"
 
+#include <chrono>
 #include <optional>
 #include <utility>
 
@@ -88,15 +89,17 @@ void PageSession::stop() {
 
 void PageSession::work() {
     constexpr double budget_seconds = 1; // what is heard ends a piece earlier
+    constexpr std::chrono::seconds between_looks(1);
     for (;;) {
         {
             std::unique_lock lock(mutex_);
-            changed_.wait(lock, [this] { return stopped_ || heard_; });
+            changed_.wait_for(lock, between_looks, [this] { return stopped_ || heard_; });
             if (stopped_) break;
             heard_ = false;
         }
-        while (session_.work(budget_seconds)) {
-        }
+        do
+            session_.look_at_files();
+        while (session_.work(budget_seconds));
     }
     home_->end_jobs(); // here, so that the server's thread does not wait for them
     on_end_();

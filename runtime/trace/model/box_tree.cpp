@@ -246,12 +246,12 @@ class TreeBuilder {
 
 } // namespace
 
-BoxedItem::BoxedItem(const Box& box, double extent, std::uint32_t number) : item(number) {
+BoxedItem::BoxedItem(const Box& box, std::uint32_t number) : item(number) {
     constexpr double slack = 4e-6;
     for (int axis = 0; axis < 3; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
-        lower[i] = std::nextafter(static_cast<float>(box.min[axis] - slack * extent), -infinite);
-        upper[i] = std::nextafter(static_cast<float>(box.max[axis] + slack * extent), infinite);
+        lower[i] = std::nextafter(static_cast<float>(box.min[axis] - slack), -infinite);
+        upper[i] = std::nextafter(static_cast<float>(box.max[axis] + slack), infinite);
     }
 }
 

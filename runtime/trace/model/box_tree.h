@@ -26,9 +26,8 @@ struct BoxedItem {
     std::array<float, 3> lower{}, upper{};
     std::uint32_t item = 0; ///< less than BoxNode::inner
 
-    /// Rounds outwards, by what rays in single precision may be off as well. `extent`: of the coordinates in
-    /// the tree.
-    BoxedItem(const Box& box, double extent, std::uint32_t item);
+    /// Rounds outwards, by what rays in single precision may be off as well, in a frame that the tree fills.
+    BoxedItem(const Box& box, std::uint32_t item);
 };
 
 /// Eight items that follow each other closely in number, in less than half the room: their boxes in bytes,

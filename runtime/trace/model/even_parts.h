@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "runtime/trace/model/lanes.h"
 
@@ -37,8 +36,7 @@ struct EvenOffset {
     Double4 offset;
 };
 
-/// One for each edge of an even model. Requires its trees.
-std::vector<EvenPart> even_parts(const TraceModel& model);
-std::vector<EvenOffset> even_offsets(const TraceModel& model);
+/// Adds both for each edge of an even model. Requires its trees.
+void add_even_parts(TraceModel& model);
 
 } // namespace graftal

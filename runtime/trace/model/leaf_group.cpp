@@ -68,26 +68,25 @@ std::vector<BoxedItem> grouped_items(const TraceModel& model, std::span<const st
     while (!numbers.empty()) {
         Box box;
         const LeafGroup group(numbers.front(), group_at(model, numbers, box));
-        if (!box.empty()) items.emplace_back(box, 1, group.item());
+        if (!box.empty()) items.emplace_back(box, group.item());
         numbers = numbers.subspan(group.count);
     }
     return items;
 }
 
-std::vector<EvenTriangles> even_triangles(const TraceModel& model, std::vector<EvenPart>& parts) {
-    std::vector<EvenTriangles> all;
+void add_even_triangles(TraceModel& model) {
+    std::vector<EvenTriangles>& all = model.even_triangles;
     for (const BoxNode& node : model.boxes)
         for (const std::uint32_t item : node.entry) {
             if (!LeafGroup::is(item)) continue;
             const LeafGroup group(item);
             // An edge is in several trees, and may begin groups of several sizes.
-            const std::uint32_t known = parts[group.first].group;
+            std::uint32_t& known = model.even_parts[group.first].group;
             if (known < all.size() && all[known].first == group.first && all[known].count >= group.count)
                 continue;
-            parts[group.first].group = static_cast<std::uint32_t>(all.size());
+            known = static_cast<std::uint32_t>(all.size());
             all.push_back(side_by_side(model, group));
         }
-    return all;
 }
 
 } // namespace graftal

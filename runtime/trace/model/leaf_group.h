@@ -8,7 +8,6 @@
 
 namespace graftal {
 
-struct EvenPart;
 struct TraceModel;
 
 /// Up to four triangles of one node that lie in about the same box, as one item of a tree: rays meet them at
@@ -51,8 +50,8 @@ struct alignas(64) EvenTriangles {
     bool similar = true; ///< the edges are similarities; else none is
 };
 
-/// Lanes for the groups in the model's trees. In a part that begins a group, `group` is the number of its
-/// triangles. Requires the parts of all edges.
-std::vector<EvenTriangles> even_triangles(const TraceModel& model, std::vector<EvenPart>& parts);
+/// Adds lanes for the groups in an even model's trees. In a part that begins a group, `group` is the number
+/// of its triangles. Requires even_parts.
+void add_even_triangles(TraceModel& model);
 
 } // namespace graftal

@@ -62,7 +62,7 @@ std::unique_ptr<TraceMesh> trace_mesh(const Baked& baked, const Affine& frame_fr
         Box box;
         for (const std::uint32_t corner : mesh->corners[i])
             box.include(mesh->vertices[corner]);
-        items.emplace_back(box, 1, i);
+        items.emplace_back(box, i);
     }
     mesh->tree = build_box_tree(items, mesh->boxes, cancel);
     return mesh;
@@ -86,7 +86,7 @@ bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRan
     return true;
 }
 
-MeshStore::MeshStore(const PreparedCut& prepared, std::uint64_t most_shell_work)
+MeshStore::MeshStore(const PreparedGraph& prepared, std::uint64_t most_shell_work)
     : prepared_(prepared), most_shell_work_(most_shell_work) {}
 
 PieceKind MeshStore::key(NodeId node, const Affine& graph_from_frame, std::uint32_t steps,

@@ -57,7 +57,7 @@ bool intersect(const TraceMesh::Triangle& triangle, const Ray& ray, const RayRan
 class MeshStore {
   public:
     /// Keeps a reference. `most_shell_work`: points moved for one shell; it gets coarser by that.
-    MeshStore(const PreparedCut& prepared, std::uint64_t most_shell_work);
+    MeshStore(const PreparedGraph& prepared, std::uint64_t most_shell_work);
 
     /// The key of the shell of a crowded node where a unit of its frame has this detail (Projection). Keys
     /// tell half octaves apart.
@@ -91,7 +91,7 @@ class MeshStore {
 
     std::unique_ptr<TraceMesh> bake_shell(const PieceKind& key, const Affine& graph_from_frame) const;
 
-    const PreparedCut& prepared_;
+    const PreparedGraph& prepared_;
     const std::uint64_t most_shell_work_;
     std::mutex mutex_;
     std::uint64_t most_work_ = UINT64_MAX;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <set>
@@ -21,7 +22,7 @@ namespace graftal {
 
 namespace {
 
-TraceNode::Kind kind_of(const CutNode& node) {
+TraceNode::Kind kind_of(const DetailNode& node) {
     if (node.primitive) return TraceNode::Kind::primitive;
     if (node.cell) return TraceNode::Kind::run;
     if (node.unbounded) return TraceNode::Kind::unbounded;
@@ -39,7 +40,7 @@ class ModelBuilder {
   public:
     ModelBuilder(TraceModel& model, const Control& control)
         : model_(model), cancel_(control.cancel), meter_(control, "trace_model", edges_a_look),
-          cut_(model.layers.cut), bounds_(model.ground->bounds) {
+          cut_(model.layers.cut), bounds_(model.basis->bounds) {
         std::size_t edges = 0;
         for (NodeId id = 0; id < cut_.nodes.size(); ++id) {
             model_.graph_from_frame.push_back(graph_from_frame(cut_.nodes[id], bounds_.node[id]));
@@ -84,7 +85,7 @@ class ModelBuilder {
 
     void add_node(NodeId id) {
         meter_.add();
-        const CutNode& source = cut_.nodes[id];
+        const DetailNode& source = cut_.nodes[id];
         const Affine frame_from_graph = inverse(model_.graph_from_frame[id]);
         TraceNode node;
         node.kind = kind_of(source);
@@ -104,22 +105,16 @@ class ModelBuilder {
         node.node_from_proxy = LaneMap(frame_from_proxy);
         if (!is_singular(frame_from_proxy)) node.proxy_from_node = LaneMap(inverse(frame_from_proxy));
         node.first_edge = static_cast<std::uint32_t>(model_.edges.size());
-        if (node.kind == TraceNode::Kind::parts) {
-            node.tree = add_edges(id, source.edges, bounds_.edge[id]);
-            node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
-            node.stop_tree = add_edges(id, source.stop_edges, bounds_.stop_edge[id]);
-            node.stop_edge_count =
-                static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge - node.edge_count;
-        } else if (node.kind == TraceNode::Kind::combined) {
+        if (node.kind == TraceNode::Kind::combined) {
             add_operands(id, node);
         } else if (node.kind == TraceNode::Kind::run) {
             add_cell(*source.cell, frame_from_graph, node);
-        } else if (node.kind == TraceNode::Kind::crushed) {
+        } else if (node.kind != TraceNode::Kind::primitive) {
             node.tree = add_edges(id, source.edges, bounds_.edge[id]);
-            node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
-        } else if (node.kind == TraceNode::Kind::unbounded) {
-            node.tree = add_edges(id, source.edges, bounds_.edge[id]);
-            node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
+            node.edge_count = edges_from(node.first_edge);
+            if (node.kind == TraceNode::Kind::parts)
+                node.stop_tree = add_edges(id, source.stop_edges, bounds_.stop_edge[id]);
+            node.stop_edge_count = edges_from(node.first_edge + node.edge_count);
             while (node.endless_count < node.edge_count &&
                    cut_.nodes[model_.edges[node.first_edge + node.endless_count].child].unbounded)
                 ++node.endless_count;
@@ -129,24 +124,28 @@ class ModelBuilder {
         model_.nodes.push_back(node);
     }
 
+    /// Number of edges from that one on.
+    std::uint32_t edges_from(std::uint32_t first) const {
+        return static_cast<std::uint32_t>(model_.edges.size()) - first;
+    }
+
     /// The tree is over what a difference takes away, as far as that is bounded. All edges of an intersection
     /// are met one by one.
     void add_operands(NodeId id, TraceNode& node) {
-        const CutNode& source = cut_.nodes[id];
+        const DetailNode& source = cut_.nodes[id];
         node.combination = source.combination;
         node.stops_combined = !source.terminal;
         const std::size_t apart =
             source.combination == Combination::subtract ? 1 : std::numeric_limits<std::size_t>::max();
         node.tree = add_operands(id, node, source.edges, bounds_.edge[id], apart);
-        node.edge_count = static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge;
+        node.edge_count = edges_from(node.first_edge);
         node.stop_tree =
             add_operands(id, node, source.stop_edges, bounds_.stop_edge[id], node.stops_combined ? apart : 0);
-        node.stop_edge_count =
-            static_cast<std::uint32_t>(model_.edges.size()) - node.first_edge - node.edge_count;
+        node.stop_edge_count = edges_from(node.first_edge + node.edge_count);
     }
 
     /// Adds the edges in their order, and a tree over the bounded ones from the one numbered `apart` on.
-    std::uint32_t add_operands(NodeId id, TraceNode& node, const std::vector<CutEdge>& edges,
+    std::uint32_t add_operands(NodeId id, TraceNode& node, const std::vector<DetailEdge>& edges,
                                const std::vector<Box>& boxes, std::size_t apart) {
         std::vector<BoxedItem> items;
         for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -154,9 +153,9 @@ class ModelBuilder {
                 add_part(id, {edges[i], boxes[i], length_in_turns(edges[i].node_from_child.linear)});
             const bool endless = cut_.nodes[edges[i].child].unbounded;
             node.has_endless_operands = node.has_endless_operands || endless;
-            if (i >= apart && !endless) items.emplace_back(model_.edges[number].box, 1, number);
+            if (i >= apart && !endless) items.emplace_back(model_.edges[number].box, number);
         }
-        return items.empty() ? no_tree : build_box_tree(items, model_.boxes);
+        return build_box_tree(items, model_.boxes, cancel_);
     }
 
     void add_cell(const EdgeCell& cell, const Affine& frame_from_graph, TraceNode& node) {
@@ -164,7 +163,7 @@ class ModelBuilder {
         node.first_edge = static_cast<std::uint32_t>(model_.edges.size());
         std::vector<BoxedItem> items;
         for (std::size_t i = cell.first; i < cell.first + cell.count; ++i) {
-            items.emplace_back(transformed(frame_from_graph, box_of((*cell.source->run)[i])), 1,
+            items.emplace_back(transformed(frame_from_graph, box_of((*cell.source->run)[i])),
                                static_cast<std::uint32_t>(i));
             meter_.add();
         }
@@ -208,11 +207,12 @@ class ModelBuilder {
         add(edge, look);
     }
 
-    std::uint32_t add_edges(NodeId id, const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) {
+    std::uint32_t add_edges(NodeId id, const std::vector<DetailEdge>& edges, const std::vector<Box>& boxes) {
         std::vector<std::uint32_t> numbers;
-        std::set<EdgeKey> met; // parts that coincide are drawn once
+        std::set<std::pair<NodeId, std::array<double, 12>>> met; // parts that coincide are drawn once
         for (const Part& part : parts_of(edges, boxes)) {
-            if (!met.insert(key_of(part.edge)).second) continue;
+            const auto place = std::bit_cast<std::array<double, 12>>(part.edge.node_from_child);
+            if (!met.emplace(part.edge.child, place).second) continue;
             const std::uint32_t number = add_part(id, part);
             if (!cut_.nodes[part.edge.child].unbounded) numbers.push_back(number);
         }
@@ -222,7 +222,7 @@ class ModelBuilder {
 
     /// An instance and the box of what it draws, in the frame that the graph gives the node.
     struct Part {
-        CutEdge edge;
+        DetailEdge edge;
         Box box;
         double turns = 1;
         std::optional<NodeId> holder = {}; ///< of a primitive, unless it is the node itself
@@ -250,7 +250,7 @@ class ModelBuilder {
 
     /// The instances, with the primitives of small groups in place of the groups: a test of one more box is
     /// faster than to enter one more frame. The unbounded ones come first.
-    std::vector<Part> parts_of(const std::vector<CutEdge>& edges, const std::vector<Box>& boxes) {
+    std::vector<Part> parts_of(const std::vector<DetailEdge>& edges, const std::vector<Box>& boxes) {
         constexpr std::size_t most_parts = 4096;
         std::vector<Part> parts;
         for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -267,14 +267,14 @@ class ModelBuilder {
 
     /// A handful of primitives, which is never cut.
     bool is_small_group(NodeId id) const {
-        const CutNode& node = cut_.nodes[id];
+        const DetailNode& node = cut_.nodes[id];
         return spells_out_groups_ && !node.primitive && !node.cell && !node.unending && !node.unbounded &&
                !node.sealed && !node.cullable && !node.is_combined();
     }
 
-    void add_group(const CutEdge& group, std::vector<Part>& parts) const {
-        for (const CutEdge& member : cut_.nodes[group.child].edges) {
-            CutEdge edge = member;
+    void add_group(const DetailEdge& group, std::vector<Part>& parts) const {
+        for (const DetailEdge& member : cut_.nodes[group.child].edges) {
+            DetailEdge edge = member;
             edge.node_from_child = group.node_from_child * member.node_from_child;
             edge.tint = group.tint * member.tint;
             if (!edge.material) edge.material = group.material;
@@ -302,29 +302,18 @@ class ModelBuilder {
         edge.growth = 1 / stretch;
     }
 
-    using EdgeKey = std::pair<NodeId, std::array<double, 12>>;
-    static EdgeKey key_of(const CutEdge& edge) {
-        EdgeKey key{edge.child, {}};
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 3; ++row)
-                key.second[static_cast<std::size_t>(3 * column + row)] =
-                    column < 3 ? edge.node_from_child.linear[column][row]
-                               : edge.node_from_child.translation[row];
-        return key;
-    }
-
     TraceModel& model_;
     const CancelFlag& cancel_;
     WorkMeter meter_;
     bool spells_out_groups_ = true;
-    const CutGraph& cut_;
+    const DetailGraph& cut_;
     const DrawnBounds& bounds_;
     std::map<const CellSource*, std::uint32_t> run_of_;
 };
 
 /// Least detail of a unit: at the far end of the model, were it out of the picture.
 double least_detail(const TraceModel& model) {
-    const CutGraph& cut = model.prepared.cut;
+    const DetailGraph& cut = model.prepared.cut;
     const Ball& ball = cut.nodes[cut.root].ball;
     const Camera& camera = model.view.camera;
     const double reach = glm::distance(ball.centre, camera.location) + 2 * ball.radius;
@@ -378,7 +367,7 @@ std::uint64_t share_of(double work_seconds, double units_a_second, std::uint64_t
 
 /// Sizes by node of the cut; none if rays come through everywhere.
 std::vector<ShellSizes> found_shell_sizes(TraceModel& model, const Control& control) {
-    const CutGraph& cut = model.prepared.cut;
+    const DetailGraph& cut = model.prepared.cut;
     // Sizes are asked for by octaves. An eighth of one tells them apart, and nodes of all sizes share kinds.
     constexpr int grain = PieceKind::steps_an_octave / 8;
     Weights weights(
@@ -403,9 +392,9 @@ std::vector<ShellSizes> found_shell_sizes(TraceModel& model, const Control& cont
 /// Where copies lie in each other so often that rays would not come through.
 void find_shells(TraceModel& model, const Control& control) {
     if (!model.projection.culls()) return;
-    if (std::ranges::any_of(model.prepared.cut.nodes, &CutNode::is_combined)) return;
-    std::optional<std::vector<ShellSizes>>& known = model.ground->shell_sizes;
-    const auto by_error = [](const CutNode& node) { return node.terminal_px > 0; };
+    if (std::ranges::any_of(model.prepared.cut.nodes, &DetailNode::is_combined)) return;
+    std::optional<std::vector<ShellSizes>>& known = model.basis->shell_sizes;
+    const auto by_error = [](const DetailNode& node) { return node.terminal_px > 0; };
     if (!known || std::ranges::any_of(model.prepared.cut.nodes, by_error))
         known = found_shell_sizes(model, control);
     const std::vector<ShellSizes>& sizes = *known;
@@ -437,23 +426,23 @@ std::uint32_t TraceRun::edge_of(RunShape shape, std::uint16_t colour) const {
     return no_edge;
 }
 
-TraceGround::TraceGround(const PreparedCut& prepared, double work_seconds, const CancelFlag& cancel)
+TraceBasis::TraceBasis(const PreparedGraph& prepared, double work_seconds, const CancelFlag& cancel)
     : layers(layered(prepared.cut, prepared.root_steps)),
       bounds(drawn_bounds(layers.cut, share_of(work_seconds, 1 / StagePrice::piece, most_pieces),
                           {cancel, {}})) {}
 
-TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& seen,
+TraceModel::TraceModel(std::shared_ptr<const PreparedGraph> ready, const View& seen,
                        const DetailOptions& cut_options, ModelTextures read_textures,
-                       std::shared_ptr<TraceGround> known_ground, const CancelFlag& cancel)
+                       std::shared_ptr<TraceBasis> known_basis, const CancelFlag& cancel)
     : shared(std::move(ready)), prepared(*shared),
-      ground(known_ground ? std::move(known_ground)
-                          : std::make_shared<TraceGround>(prepared, cut_options.work_seconds, cancel)),
-      layers(ground->layers), view(seen), options(cut_options),
+      basis(known_basis ? std::move(known_basis)
+                        : std::make_shared<TraceBasis>(prepared, cut_options.work_seconds, cancel)),
+      layers(basis->layers), view(seen), options(cut_options),
       projection(view, options, options.error_px, nearest_to_eye(prepared.cut)),
       meshes(prepared, most_shell_work(options)), textures(std::move(read_textures)) {
     least_detail_per_unit = least_detail(*this);
-    const CutNode& root = prepared.cut.nodes[prepared.cut.root];
-    for (const CutNode& node : prepared.cut.nodes)
+    const DetailNode& root = prepared.cut.nodes[prepared.cut.root];
+    for (const DetailNode& node : prepared.cut.nodes)
         if (node.primitive && node.primitive != PrimitiveKind::plane)
             widest = std::max(widest, widened_reach(*node.primitive));
     if (root.widens) most_half_width = projection.most_half_width(root.ball);
@@ -469,33 +458,26 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedCut> ready, const View& see
     even = is_even(*this);
     if (cancel.raised()) throw Cancelled();
     if (!even) return;
-    even_parts = graftal::even_parts(*this);
-    even_offsets = graftal::even_offsets(*this);
-    even_triangles = graftal::even_triangles(*this, even_parts);
+    add_even_parts(*this);
+    add_even_triangles(*this);
 }
 
 const SelfShadows& TraceModel::self_shadows(const CancelFlag& cancel) const {
-    return ground->self_shadows.get([&] {
+    return basis->self_shadows.get([&] {
         return measure_self_shadows(prepared.cut, prepared.symmetry, prepared.root_steps, view,
                                     options.limit_normals, options.light_steps,
                                     self_shadow_work(options.work_seconds), cancel);
     });
 }
 
-bool TraceModel::is_content() const {
-    const Box& box = prepared.bounds;
-    if (!(most_half_width > 0) || prepared.root_steps != unlimited_steps || box.empty()) return false;
-    const Vec3 size = box.size();
-    return std::min({size.x, size.y, size.z}) <= most_thickness();
-}
-
 double TraceModel::near_enough(const Ray& ray, double share) const {
     constexpr double before_all = -std::numeric_limits<double>::infinity();
-    if (!is_content()) return before_all;
     const Box& box = prepared.bounds;
+    if (!(most_half_width > 0) || prepared.root_steps != unlimited_steps || box.empty()) return before_all;
     const Vec3 size = box.size();
+    const double most_thickness = 0.1 * most_half_width;
     for (int axis = 0; axis < 3; ++axis) {
-        if (size[axis] > most_thickness() || ray.direction[axis] == 0) continue;
+        if (size[axis] > most_thickness || ray.direction[axis] == 0) continue;
         const double slope = std::abs(ray.direction[axis]);
         const double middle = (box.centre()[axis] - ray.origin[axis]) / ray.direction[axis];
         const Ball here{ray(middle), 2 * most_half_width};

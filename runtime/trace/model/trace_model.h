@@ -110,7 +110,7 @@ struct alignas(64) TraceNode {
         unbounded, ///< a union that holds planes, which no box holds
         run,       ///< a range of a run
         combined,  ///< an intersection or a difference of its edges (traverse/combined.cpp)
-        crushed,   ///< leads through a singular map (CutNode::sealed): its edges are met in the world
+        crushed,   ///< leads through a singular map (DetailNode::sealed): its edges are met in the world
                    ///< (traverse/flat_walk.cpp)
     };
 
@@ -122,8 +122,8 @@ struct alignas(64) TraceNode {
     Kind kind = Kind::parts;
     bool unending = false;
     bool cullable = true;
-    bool faint = false;                ///< of no area (CutNode::shadowless)
-    bool widens = false;               ///< CutNode::widens
+    bool faint = false;                ///< of no area (DetailNode::shadowless)
+    bool widens = false;               ///< DetailNode::widens
     std::uint32_t tree = no_tree;      ///< of its edges, or its items of the run
     std::uint32_t stop_tree = no_tree; ///< tree of its drawing where it is cut; none: its proxy
     std::uint32_t first_edge = 0;      ///< of its edges, which follow each other
@@ -170,9 +170,9 @@ struct ModelTextures {
 };
 
 /// Parts that models of one graph and view have in common, whatever their error.
-struct TraceGround {
+struct TraceBasis {
     /// `work_seconds`: allowed for the picture. The flag ends it by Cancelled.
-    TraceGround(const PreparedCut& prepared, double work_seconds, const CancelFlag& cancel = {});
+    TraceBasis(const PreparedGraph& prepared, double work_seconds, const CancelFlag& cancel = {});
 
     LayeredGraph layers; ///< of prepared.cut
     DrawnBounds bounds;  ///< of the layers
@@ -184,10 +184,10 @@ struct TraceGround {
 
 /// A prepared graph made ready for rays, for one view. It is read by many threads.
 struct TraceModel {
-    std::shared_ptr<const PreparedCut> shared; ///< never null; may be that of other views too
-    const PreparedCut& prepared;               ///< *shared
-    std::shared_ptr<TraceGround> ground;       ///< never null; models of other errors share it
-    const LayeredGraph& layers;                ///< the ground's
+    std::shared_ptr<const PreparedGraph> shared; ///< never null; may be that of other views too
+    const PreparedGraph& prepared;               ///< *shared
+    std::shared_ptr<TraceBasis> basis;           ///< never null; models of other errors share it
+    const LayeredGraph& layers;                  ///< the basis'
     View view;
     DetailOptions options;
     Projection projection;
@@ -217,8 +217,8 @@ struct TraceModel {
     bool has_shells = false;   ///< some node may be drawn as one; never beside combined nodes
     std::uint64_t weighed = 0; ///< edges of kinds followed to find where (Weights)
     bool clear_texels = false; ///< some texture has them
-    /// True if all is bounded, drawn no wider than it is, opaque, and only scaled evenly and moved down to
-    /// the primitives: rays go through it faster (traverse/even.h).
+    /// True if all is bounded, of no run, drawn no wider than it is, opaque, and only scaled evenly and moved
+    /// down to the primitives: rays go through it faster (traverse/even.h).
     bool even = false;
     std::vector<EvenPart> even_parts; ///< by edge, if it is
     std::vector<EvenOffset> even_offsets;
@@ -227,22 +227,18 @@ struct TraceModel {
     /// Distance up to which a hit is near enough, if none can be nearer by more than this share of the half
     /// width: for a model in a plane that is drawn in specks. Else before all.
     double near_enough(const Ray& ray, double share) const;
-    /// Whether rays may ask that: what they meet may then depend on the order of parts.
-    bool is_content() const;
-    /// Thickness of the box of a content model, at most.
-    double most_thickness() const { return 0.1 * most_half_width; }
 
     /// Shadows of the view's lights; measured when they are first asked for: the flag ends that
     /// by Cancelled.
     const SelfShadows& self_shadows(const CancelFlag& cancel = {}) const;
 
     /// The node as the cut has it.
-    const CutNode& source(std::uint32_t node) const { return prepared.cut.nodes[layers.source[node]]; }
+    const DetailNode& source(std::uint32_t node) const { return prepared.cut.nodes[layers.source[node]]; }
 
-    /// Materials without a texture of theirs show their colour. `ground`: of the same graph and view, or
+    /// Materials without a texture of theirs show their colour. `basis`: of the same graph and view, or
     /// null. The flag ends it by Cancelled.
-    TraceModel(std::shared_ptr<const PreparedCut> prepared, const View& view, const DetailOptions& options,
-               ModelTextures textures = {}, std::shared_ptr<TraceGround> ground = nullptr,
+    TraceModel(std::shared_ptr<const PreparedGraph> prepared, const View& view, const DetailOptions& options,
+               ModelTextures textures = {}, std::shared_ptr<TraceBasis> basis = nullptr,
                const CancelFlag& cancel = {});
     TraceModel(const TraceModel&) = delete;
     TraceModel& operator=(const TraceModel&) = delete;

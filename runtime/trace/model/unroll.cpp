@@ -34,7 +34,7 @@ class Unroller {
     void run() {
         for (const std::uint32_t number : nodes_by_distance()) {
             if (cancel_.raised()) throw Cancelled();
-            unroll(number);
+            unroll(model_.nodes[number]);
         }
     }
 
@@ -62,20 +62,30 @@ class Unroller {
         return order;
     }
 
-    void unroll(std::uint32_t number) {
-        TraceNode& node = model_.nodes[number];
+    void unroll(TraceNode& node) {
         if (node.kind != TraceNode::Kind::parts) return;
         Parts parts;
         for (std::uint32_t i = 0; i < node.edge_count; ++i)
             parts.edges.push_back(node.first_edge + i);
         parts.unrolling.least_steps = node.unending ? 1 : 0; // or it is cut itself
-        const auto is_any_union = [&](const TraceEdge& edge) { return is_union(model_.nodes[edge.child]); };
+        const auto leads_to_union = [&](std::uint32_t number) {
+            return is_union(model_.nodes[model_.edges[number].child]);
+        };
+        // A union that is never cut where the parts passed over are not.
+        const auto leads_to_group = [&](std::uint32_t number) {
+            const TraceEdge& edge = model_.edges[number];
+            const TraceNode& child = model_.nodes[edge.child];
+            return is_union(child) && !child.cullable &&
+                   (!child.unending || edge.levels < parts.unrolling.least_steps);
+        };
+        const auto has_groups = [&] { return std::ranges::any_of(parts.edges, leads_to_group); };
         std::vector<Unrolling> unrollings;
-        bool deeper = has_groups(parts);
+        bool deeper = has_groups();
         std::size_t edges = model_.edges.size();
         while (unrollings.size() < most_unrollings) {
-            pass_groups(parts);
-            if (has_groups(parts)) { // half of the way
+            for (int i = 0; i < most_groups && expand(parts, leads_to_group); ++i) {
+            }
+            if (has_groups()) { // half of the way
                 model_.edges.resize(edges);
                 model_.looks.resize(edges);
                 break;
@@ -89,7 +99,7 @@ class Unroller {
                 unrollings.push_back(parts.unrolling);
             }
             edges = model_.edges.size();
-            deeper = expand(parts, is_any_union);
+            deeper = expand(parts, leads_to_union);
             if (!deeper) break;
         }
         node.first_unrolling = static_cast<std::uint32_t>(model_.unrollings.size());
@@ -170,32 +180,12 @@ class Unroller {
         return node.stop_edge_count;
     }
 
-    /// A union that is never cut where the parts passed over are not.
-    bool is_group(const TraceEdge& edge, const Unrolling& unrolling) const {
-        const TraceNode& child = model_.nodes[edge.child];
-        return is_union(child) && !child.cullable && (!child.unending || edge.levels < unrolling.least_steps);
-    }
-
-    bool has_groups(const Parts& parts) const {
-        return std::any_of(parts.edges.begin(), parts.edges.end(), [&](std::uint32_t number) {
-            return is_group(model_.edges[number], parts.unrolling);
-        });
-    }
-
-    /// Puts the parts of groups in their places.
-    void pass_groups(Parts& parts) {
-        const auto is_group_here = [&](const TraceEdge& edge) { return is_group(edge, parts.unrolling); };
-        for (int i = 0; i < most_groups && expand(parts, is_group_here); ++i) {
-        }
-    }
-
-    /// Puts their parts in place of those of which it holds; false if there are none, or too many.
+    /// Puts their parts in place of those edges of which it holds; false if there are none, or too many.
     template<typename Holds> bool expand(Parts& parts, const Holds& holds) {
         std::size_t count = 0;
         bool any = false;
-        const auto is_expanded = [&](std::uint32_t number) { return holds(model_.edges[number]); };
         for (const std::uint32_t number : parts.edges) {
-            const bool expanded = is_expanded(number);
+            const bool expanded = holds(number);
             any = any || expanded;
             count += expanded ? model_.nodes[model_.edges[number].child].edge_count : 1;
         }
@@ -205,7 +195,7 @@ class Unroller {
         made_ += count;
         Parts deeper{{}, parts.unrolling};
         for (const std::uint32_t number : parts.edges) {
-            if (!is_expanded(number)) {
+            if (!holds(number)) {
                 deeper.edges.push_back(number);
                 continue;
             }

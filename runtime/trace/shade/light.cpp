@@ -95,7 +95,8 @@ Rgb Shader::sky_light(double front_chance, const Point& point, double body, Vec3
     if (bright_sky_)
         density_pi += std::numbers::pi * bright_sky_->density(sky_->picture_from_world * direction);
     if (!(density_pi > 0)) return Rgb(0.0);
-    return share / density_pi * light * light_through({point.position, direction}, {least}, *point.inside);
+    const Vec3 from = behind ? point.far_side : point.position;
+    return share / density_pi * light * light_through({from, direction}, {least}, *point.inside);
 }
 
 /// The specular share of a light from there.
@@ -129,6 +130,7 @@ Rgb Shader::light_of(const Lamp& lamp, const Point& point, double least) {
     Rgb share = point.body * (behind ? -material.translucency : material.diffuse) * cosine * point.rgb;
     if (!lamp.shadowless && !behind) share += shine(point, to_light.direction);
     if (!(largest(share) > 0)) return Rgb(0.0);
+    if (behind) to_light.origin = point.far_side;
     if (!lamp.shadowless) share *= light_through(to_light, range, *point.inside);
     return share * lamp.rgb;
 }

@@ -39,6 +39,7 @@ struct Shader::Point {
     double body = 1;      ///< share of what scatters by the surface's colour
     Rgb through{0.0};     ///< share that goes through
     double shone_on = 1;  ///< share of what shines on it that is left (SurfaceHit::light_share)
+    Vec3 far_side{0.0};   ///< where light from behind falls on it: `position`, but of a sheet
 };
 
 } // namespace graftal

@@ -293,8 +293,9 @@ double Shader::scattered_by(const Point& point) {
 bool Shader::scatter(Path& path, const Point& point, double choice, SampleStream& random) const {
     const double through = point.material->translucency, diffuse = point.material->diffuse + through;
     path.weight *= point.shone_on * point.body * diffuse * point.rgb;
-    const Vec3 pole = choice * diffuse < through ? -point.normal : point.normal;
-    path.ray = {point.position, formulas::cosine_direction(pole, random.next())};
+    const bool passes = choice * diffuse < through;
+    path.ray = {passes ? point.far_side : point.position,
+                formulas::cosine_direction(passes ? -point.normal : point.normal, random.next())};
     ++path.bounces;
     return is_finite(path.ray.direction);
 }
@@ -375,6 +376,7 @@ Shader::Point Shader::point_of(const Ray& ray, const Inside& inside, const Surfa
     if (view_.ground && hit.material == &view_.ground->material) point.position.y = view_.ground->height;
     if (hit.material == &catcher_paper_) point.position.y = view_.catcher->centre.y;
     point.shone_on = hit.light_share;
+    point.far_side = point.position + hit.to_far_side;
     share_light(point);
     return point;
 }

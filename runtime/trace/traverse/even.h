@@ -366,13 +366,9 @@ template<Instructions instructions, bool any> struct Traversal::EvenKernel : Eve
     }
 
     GRAFTAL_INLINE void set_best(double t, const Vec3& normal) {
+        self.best_.renew();
         self.best_.t = t;
-        self.best_.found = true;
         self.best_.normal = normal;
-        self.best_.mesh_colour = nullptr;
-        self.best_.is_upright = false;
-        self.best_.in_world = false;
-        self.best_.crushed = false;
     }
 
     GRAFTAL_INLINE void keep_way(std::uint32_t number) {

@@ -84,7 +84,7 @@ struct Traversal::EvenPlaces {
         child.scale = parent.scale * part.stretch;
         child.edge = edge | (parent.cut ? from_cut : 0);
         child.node = part.child;
-        child.steps = parent.steps == unlimited_steps ? parent.steps : parent.steps - part.levels;
+        child.steps = steps_below(parent.steps, part);
         child.least_detail = model.least_detail_per_unit;
         child.most_detail = INFINITY;
     }

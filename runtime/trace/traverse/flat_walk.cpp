@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -140,18 +141,14 @@ bool Traversal::meet_drawn(const Primitive& primitive, const Affine& drawn, cons
     if (!meet(primitive, {leaf_from_world(ray_(at)), direction / speed},
               {(range.least - at) * speed, (best_.t - at) * speed}, hit))
         return false;
+    best_.renew();
     best_.t = at + hit.t / speed;
-    best_.found = true;
     best_.normal = hit.normal;
     best_.point = leaf_from_world(ray_(best_.t));
     best_.turns = 1;
     best_.world_from_leaf = LaneMap(drawn);
-    best_.is_upright = false;
     best_.proxy_node = no_edge;
-    best_.mesh_colour = nullptr;
     best_.in_world = true;
-    best_.crushed = false;
-    best_.inverted = false;
     return true;
 }
 
@@ -238,17 +235,13 @@ void Traversal::push_flat_parts(const FlatPart& part, const TraceNode& node) {
     }
 }
 
-bool Traversal::meet_flat_plane(const FlatPart& part, const RayRange& range) {
-    const std::optional<Affine> place = place_of_plane(part.world_from_node.affine());
-    return place && meet_drawn(PrimitiveKind::plane, *place, range);
-}
-
 void Traversal::meet_flat_part(const FlatPart& part, const RayRange& range, std::uint32_t frame_number) {
     ++visits_;
     const TraceNode& node = model_.nodes[model_.edges[part.edge & ~from_cut].child];
     if (node.kind == TraceNode::Kind::unbounded) return push_flat_parts(part, node);
     if (is_endless(node)) {
-        if (!meet_flat_plane(part, range)) return;
+        const std::optional<Affine> plane = place_of_plane(part.world_from_node.affine());
+        if (!plane || !meet_drawn(PrimitiveKind::plane, *plane, range)) return;
         best_.turns = model_.edges[part.edge & ~from_cut].turns;
         return keep_flat_way(frame_number);
     }

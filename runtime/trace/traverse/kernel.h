@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <vector>
-
-#include <glm/geometric.hpp>
 
 #include "compiler/detail/least_width.h"
 #include "runtime/trace/traverse/later_entries.h"
@@ -132,8 +129,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
         return frames[depth++];
     }
 
-    /// Pushes the world's frame for a ray; ready_direction() is left.
-    GRAFTAL_INLINE Frame& push_ray(const Ray& ray) {
+    /// Takes the ray to the box of the model; false if it misses that.
+    GRAFTAL_INLINE bool enter_world(const Ray& ray) {
         Frame& frame = push();
         frame.world_from_node = LaneMap();
         frame.origin = lanes_of(ray.origin);
@@ -147,12 +144,6 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
         frame.steps = model.prepared.root_steps;
         frame.cut = false;
         frame.least_detail = model.least_detail_per_unit;
-        return frame;
-    }
-
-    /// Takes the ray to the box of the model; false if it misses that.
-    GRAFTAL_INLINE bool enter_world(const Ray& ray) {
-        Frame& frame = push_ray(ray);
         frame.items = false;
         frame.specks = false;
         frame.flatness = 1;
@@ -417,12 +408,7 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
         } else {
             self.best_.t = t;
         }
-        self.best_.found = true;
-        self.best_.mesh_colour = nullptr;
-        self.best_.is_upright = false;
-        self.best_.in_world = false;
-        self.best_.crushed = false;
-        self.best_.inverted = false;
+        self.best_.renew();
         return !any;
     }
 

@@ -7,7 +7,6 @@
 // last bit. Only packets.cpp includes this.
 
 #include <bit>
-#include <cstring>
 #include <span>
 #include <utility>
 
@@ -39,15 +38,16 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
     Float8 reciprocal[3];
     Float8 least_reciprocal[3], most_reciprocal[3]; ///< of all rays
     std::size_t sides[3];                           ///< of boxes, where rays go in
-    Double8 least, best;                            ///< of t
+    Double8 best;                                   ///< of t
     std::uint32_t found = 0;                        ///< rays that have met something
     std::uint32_t tied = 0;                         ///< and something else about as near
     std::uint32_t lost = 0;                         ///< rays that are to go alone, whatever they meet
     std::uint64_t visits = 0;
     std::span<const Ray> world_rays;
 
-    GRAFTAL_INLINE explicit Packet(Traversal& traversal)
-        : EvenPlaces{traversal, traversal.model_, {}}, room(*traversal.packet_), frames(room.frames) {}
+    GRAFTAL_INLINE Packet(Traversal& traversal, std::span<const Ray> rays, const RayRange& asked)
+        : EvenPlaces{traversal, traversal.model_, asked}, room(*traversal.packet_), frames(room.frames),
+          world_rays(rays) {}
 
     /// Rays that go alone: as few have little in common.
     static constexpr int few = 2;
@@ -57,15 +57,11 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
     static constexpr double rounding = 1e-14;
 
     /// Fills in the room's hits.
-    GRAFTAL_INLINE void run(std::span<const Ray> rays, const RayRange& range) {
+    GRAFTAL_INLINE void run() {
         self.hurries_ = false;
-        world_rays = rays;
         room.clear();
-        for (int i = 0; i < 2; ++i) {
-            least.half[i] = splat(range.least);
-            best.half[i] = splat(range.most);
-        }
-        const std::uint32_t all = (1u << rays.size()) - 1;
+        best.half[0] = best.half[1] = splat(range.most);
+        const std::uint32_t all = (1u << world_rays.size()) - 1;
         Going going{Float8{}, 0, 0, 0, all, Entry::no_box};
         const Next first = enter_world(going);
         if (first == Next::alone) lost = all;
@@ -87,17 +83,6 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
 
     static GRAFTAL_INLINE double of(const Double8& lanes, int lane) { return lanes.half[lane / 4][lane % 4]; }
 
-    /// All rays of the world.
-    GRAFTAL_INLINE void spread_rays(Double8 (&origin)[3], Double8 (&direction)[3]) const {
-        for (std::size_t lane = 0; lane < 8; ++lane) {
-            const Ray& ray = world_rays[std::min(lane, world_rays.size() - 1)];
-            for (int axis = 0; axis < 3; ++axis) {
-                origin[axis].half[lane / 4][lane % 4] = ray.origin[axis];
-                direction[axis].half[lane / 4][lane % 4] = ray.direction[axis];
-            }
-        }
-    }
-
     GRAFTAL_INLINE Frame& frame_after(std::uint32_t number) const {
         if (number + 1 >= frames.size()) frames.resize(2 * frames.size());
         return frames[number + 1];
@@ -111,16 +96,11 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
             going.frame = entry.frame;
             going.mask = entry.mask;
             going.at = at_box(entry);
-            if (leave_out_beaten(going)) return true;
+            if ((going.mask & found) == 0) return true;
+            going.mask &= bits_of<instructions>(going.at <= most_in(frames[going.frame]));
+            if (going.mask != 0) return true;
         }
         return false;
-    }
-
-    /// False if all rays have met something nearer than the entry is.
-    GRAFTAL_INLINE bool leave_out_beaten(Going& going) const {
-        if ((going.mask & found) == 0) return true;
-        going.mask &= bits_of<instructions>(going.at <= most_in(frames[going.frame]));
-        return going.mask != 0;
     }
 
     /// Nearest hits of the rays so far, in the frame, in single precision; a little more.
@@ -139,56 +119,25 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
         return reinterpret_cast<const float*>(&node.side[side][axis]);
     }
 
-    /// The boxes of a packed node, of which lanes that hold none are not numbers.
-    static GRAFTAL_INLINE void unpack(const PackedNode& packed, BoxNode& node) {
-        for (std::size_t side = 0; side < 2; ++side)
-            for (int axis = 0; axis < 3; ++axis) {
-                const auto i = static_cast<std::size_t>(axis);
-                Byte8 bytes;
-                std::memcpy(&bytes, packed.side[side][i].data(), sizeof(bytes));
-                node.side[side][axis] =
-                    spread<instructions>(packed.origin[i]) +
-                    __builtin_convertvector(bytes, Float8) * spread<instructions>(packed.step[i]);
-            }
-        for (std::size_t lane = 0; lane < 8; ++lane)
-            node.entry[lane] = packed.first + packed.offset[lane];
-    }
-
     /// Where rays enter the box of an entry, as test_boxes() has it.
     GRAFTAL_INLINE Float8 at_box(const Entry& entry) const {
         if (entry.box == Entry::no_box) return Float8{};
         const Frame& frame = frames[entry.frame];
-        const std::uint32_t number = (entry.box & ~Entry::packed) / 8, child = entry.box % 8;
+        const BoxNode& node = model.boxes[entry.box / 8];
         Float8 enters = frame.least;
         for (int axis = 0; axis < 3; ++axis) {
-            float side;
-            if (entry.box & Entry::packed) {
-                const PackedNode& node = model.packed_boxes[number];
-                const auto i = static_cast<std::size_t>(axis);
-                side = node.origin[i] + static_cast<float>(node.side[sides[axis]][i][child]) * node.step[i];
-            } else {
-                side = side_of(model.boxes[number], sides[axis], axis)[child];
-            }
+            const float side = side_of(node, sides[axis], axis)[entry.box % 8];
             enters = greater(enters, (spread<instructions>(side) - frame.near[axis]) * reciprocal[axis]);
         }
         return enters;
     }
 
-    GRAFTAL_INLINE Next test_boxes(Going& going) {
-        const std::uint32_t number = going.entry & ~BoxNode::inner;
-        if (!(number & BoxNode::packed)) return test_boxes(model.boxes[number], 8 * number, going);
-        const std::uint32_t packed = number & ~BoxNode::packed;
-        BoxNode node;
-        unpack(model.packed_boxes[packed], node);
-        return test_boxes(node, 8 * packed | Entry::packed, going,
-                          (1u << model.packed_boxes[packed].count) - 1);
-    }
-
     /// Puts the nearest of the boxes that rays meet in the place of their node, and the others onto the
-    /// stack, the farthest first. `used`: the lanes that hold boxes, others may.
-    GRAFTAL_INLINE Next test_boxes(const BoxNode& node, std::uint32_t first_box, Going& going,
-                                   std::uint32_t used = ~0u) {
+    /// stack, the farthest first.
+    GRAFTAL_INLINE Next test_boxes(Going& going) {
         self.boxes_ += RayWork::boxes_of_packet;
+        const std::uint32_t number = going.entry & ~BoxNode::inner;
+        const BoxNode& node = model.boxes[number];
         const std::uint32_t frame_number = going.frame, mask = going.mask;
         Frame& frame = frames[frame_number];
         const Float8 first_at = frame.least, most = most_in(frame);
@@ -201,7 +150,7 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
         Entry* const first = room.reserve(8);
         Entry* end = first;
         bool none = true;
-        for (std::uint32_t left = boxes_near(node, frame, most, mask) & used; left != 0; left &= left - 1) {
+        for (std::uint32_t left = boxes_near(node, frame, most, mask); left != 0; left &= left - 1) {
             const auto child = static_cast<std::size_t>(std::countr_zero(left));
             Float8 enters = first_at, leaves = most;
             for (int axis = 0; axis < 3; ++axis) {
@@ -214,7 +163,7 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
             if (meeting == 0) continue;
             float key = enters[meeting >> lead & 1 ? lead : std::countr_zero(meeting)];
             std::uint32_t into = node.entry[child], rays = meeting,
-                          box = first_box + static_cast<std::uint32_t>(child);
+                          box = 8 * number + static_cast<std::uint32_t>(child);
             if (key <= going.key || none) {
                 std::swap(key, going.key);
                 std::swap(into, going.entry);
@@ -255,7 +204,9 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
 
     /// Whether so few rays go there that each goes by itself. A leaf is not worth the way there.
     GRAFTAL_INLINE bool is_left_alone(const Going& going) const {
-        return std::popcount(going.mask) <= few && (going.entry & BoxNode::inner || !meets_together(going));
+        if (std::popcount(going.mask) > few) return false;
+        return going.entry & BoxNode::inner ||
+               (!LeafGroup::is(going.entry) && model.even_parts[going.entry].kind == EvenPart::Kind::node);
     }
 
     GRAFTAL_INLINE Next go_together(Going& going) {
@@ -265,31 +216,17 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
 
     /// The leaves of a group, one after the other.
     GRAFTAL_INLINE Next meet_group(Going& going) {
-        if (!meets_together(going)) return Next::alone;
         const LeafGroup group(going.entry);
         for (going.entry = group.first; going.entry < group.first + group.count; ++going.entry)
             enter(going);
         return Next::end;
     }
 
-    /// The rays are at the beginning of a frame that has them, and look into its boxes.
-    GRAFTAL_INLINE Next go_in(const TraceNode& node, bool cut, std::uint32_t tree, Going& going) const {
-        going.at = Float8{};
-        going.box = Entry::no_box;
-        ++going.frame;
-        if (cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
-            going.entry = node.first_edge + node.edge_count;
-            return Next::on;
-        }
-        going.entry = tree | BoxNode::inner;
-        return tree == no_tree ? Next::end : Next::on;
-    }
-
     /// Readies a frame: its rays begin where they are taken into it.
     GRAFTAL_INLINE void ready_rays(Frame& frame, std::uint32_t mask) const {
         Double8 from;
         for (int i = 0; i < 2; ++i)
-            from.half[i] = (least.half[i] - frame.base.half[i]) * frame.speed.half[i];
+            from.half[i] = (range.least - frame.base.half[i]) * frame.speed.half[i];
         frame.least = floats_of(from);
         frame.hits_then = UINT32_MAX;
         frame.first_least = smallest<instructions>(frame.least, mask);
@@ -316,7 +253,7 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
         self.ray_ = world_rays[static_cast<std::size_t>(lane)];
         self.visit_limit_ = self.visits_ + most_visits;
         const std::uint64_t visits_before = self.visits_;
-        const bool met = resume(going, lane, {of(least, lane), before});
+        const bool met = resume(going, lane, {range.least, before});
         visits += self.visits_ - visits_before;
         if (self.hurries_) { // the ray is not given up yet
             self.hurries_ = false;
@@ -355,23 +292,25 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
             room.ways.push_back(frames[i].edge);
     }
 
-    GRAFTAL_INLINE bool meets_together(const Going& going) const {
-        return LeafGroup::is(going.entry) || model.even_parts[going.entry].kind != EvenPart::Kind::node;
-    }
-
     /// Brings all rays to the box of the model. They are to go alone if they do not go to the same sides of
     /// boxes, or along some.
     GRAFTAL_INLINE Next enter_world(Going& going) {
         Frame& frame = frames[0];
         Double8 origin[3];
-        spread_rays(origin, direction);
+        for (std::size_t lane = 0; lane < 8; ++lane) {
+            const Ray& ray = world_rays[std::min(lane, world_rays.size() - 1)];
+            for (int axis = 0; axis < 3; ++axis) {
+                origin[axis].half[lane / 4][lane % 4] = ray.origin[axis];
+                direction[axis].half[lane / 4][lane % 4] = ray.direction[axis];
+            }
+        }
         const Box box = enlarged(model.edges.front().box, Vec3(0.0));
         std::uint32_t parallel = 0, inside = 0;
         for (int i = 0; i < 2; ++i) {
             const Double4 speed =
                 power_below(largest_of(direction[0].half[i], direction[1].half[i], direction[2].half[i]));
             const Double4 unit = inverse_power(speed);
-            Double4 from = least.half[i] * speed, to = best.half[i] * speed;
+            Double4 from = range.least * speed, to = best.half[i] * speed;
             for (int axis = 0; axis < 3; ++axis) {
                 direction[axis].half[i] = direction[axis].half[i] * unit;
                 const Double4 d = direction[axis].half[i];
@@ -435,12 +374,21 @@ template<Instructions instructions> struct Traversal::Packet : EvenPlaces {
             return Next::end;
         }
         ready_rays(frame, going.mask);
-        return go_in(node, frame.cut, frame.cut ? node.stop_tree : tree_of(node, frame, part, parent), going);
+        going.at = Float8{};
+        going.box = Entry::no_box;
+        ++going.frame;
+        if (frame.cut && node.stop_edge_count == 1) { // about as large as the node: no box to test
+            going.entry = node.first_edge + node.edge_count;
+            return Next::on;
+        }
+        const std::uint32_t tree = frame.cut ? node.stop_tree : tree_of(node, frame, part, parent);
+        going.entry = tree | BoxNode::inner;
+        return tree == no_tree ? Next::end : Next::on;
     }
 
     /// Takes one ray on alone from an entry on; true if it met something nearer.
-    GRAFTAL_INLINE bool resume(const Going& going, int lane, const RayRange& range) const {
-        EvenKernel<instructions, false> alone(self, model, range);
+    GRAFTAL_INLINE bool resume(const Going& going, int lane, const RayRange& left) const {
+        EvenKernel<instructions, false> alone(self, model, left);
         while (self.even_frames_.size() <= going.frame)
             self.even_frames_.resize(2 * self.even_frames_.size());
         alone.frames = self.even_frames_.data();

@@ -53,7 +53,7 @@ GRAFTAL_INLINE auto Traversal::Packet<instructions>::cross_triangle(const Near& 
 
 template<Instructions instructions>
 GRAFTAL_INLINE void Traversal::Packet<instructions>::ready_range(Near& near, int half) const {
-    near.least = (least.half[half] - near.base) * near.speed;
+    near.least = (range.least - near.base) * near.speed;
     near.most = (best.half[half] - near.base) * near.speed;
 }
 
@@ -117,9 +117,9 @@ GRAFTAL_INLINE auto Traversal::Packet<instructions>::cross_any(const Primitive& 
         // Also what lies so little beyond the best hit that it may be as near.
         const double slack =
             2 * rounding * (std::abs(best.half[half][j]) + std::abs(near.base[j])) * near.speed[j];
-        const RayRange range{near.least[j], near.most[j] < INFINITY ? near.most[j] + slack : near.most[j]};
+        const RayRange within{near.least[j], near.most[j] < INFINITY ? near.most[j] + slack : near.most[j]};
         PrimitiveHit hit;
-        if (!self.meet_within(primitive, {here(near.origin), here(near.along)}, range, hit,
+        if (!self.meet_within(primitive, {here(near.origin), here(near.along)}, within, hit,
                               TraceModel::usual_visits))
             continue;
         crossing.t[j] = hit.t;

@@ -33,7 +33,6 @@ struct Traversal::PacketRoom {
         std::uint32_t mask = 0;                             ///< one bit for each ray that meets its box
         std::uint32_t box = no_box;                         ///< eight times the node of boxes, and the lane
         static constexpr std::uint32_t no_box = UINT32_MAX; ///< the rays are at its beginning
-        static constexpr std::uint32_t packed = 1u << 31;   ///< marks a box of a PackedNode
     };
 
     /// A hit that some rays share; see Traversal::Best.

@@ -21,15 +21,15 @@ struct Outcome {
 // The packet is made in here: what nobody else has the address of stays in registers.
 template<typename Packet>
 Outcome run_packet(Traversal& traversal, std::span<const Ray> rays, const RayRange& range) {
-    Packet packet(traversal);
-    packet.run(rays, range);
+    Packet packet(traversal, rays, range);
+    packet.run();
     return {packet.found, packet.to_go_alone()};
 }
 
 template<typename Packet>
 GRAFTAL_AVX2 Outcome run_packet_avx2(Traversal& traversal, std::span<const Ray> rays, const RayRange& range) {
-    Packet packet(traversal);
-    packet.run(rays, range);
+    Packet packet(traversal, rays, range);
+    packet.run();
     return {packet.found, packet.to_go_alone()};
 }
 
@@ -48,14 +48,11 @@ std::uint32_t Traversal::run_packet(std::span<const Ray> rays, const RayRange& r
     return outcome.found & ~to_go_alone;
 }
 
-/// Rays that may be given up go alone: how far they come depends on the order of their parts.
-bool Traversal::go_together(std::size_t rays) const {
-    return packet_ && rays >= least_packet && model_.most_visits >= TraceModel::usual_visits;
-}
-
 std::uint32_t Traversal::closest_each(std::span<const Ray> rays, const RayRange& range,
                                       std::span<SurfaceHit> hits) {
-    if (!go_together(rays.size())) return Surfaces::closest_each(rays, range, hits);
+    // Rays that may be given up go alone: how far they come depends on the order of their parts.
+    if (!packet_ || rays.size() < least_packet || model_.most_visits < TraceModel::usual_visits)
+        return Surfaces::closest_each(rays, range, hits);
     std::uint32_t alone = 0;
     std::uint32_t found = run_packet(rays, range, alone);
     for (const PacketRoom::Hit& hit : packet_->hits) {
@@ -80,6 +77,7 @@ void Traversal::show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceH
     const PacketRoom::Best& best = packet_->best[lane];
     PacketRoom::Hit& met = packet_->hits[best.hit];
     ray_ = ray;
+    best_.renew();
     best_.t = best.t;
     best_.normal = best.normal;
     best_.point = best.point;
@@ -87,14 +85,16 @@ void Traversal::show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceH
     best_.is_upright = met.is_upright;
     if (!met.is_upright) best_.world_from_leaf = met.world_from_leaf;
     best_.proxy_node = met.proxy_node;
-    best_.mesh_colour = nullptr;
     best_.in_world = met.in_world;
-    best_.crushed = false;
     if (met.shown != PacketRoom::Hit::no_ray) {
         hits[lane] = hits[met.shown];
         hits[lane].t = best.t;
         const bool same_face = packet_->best[met.shown].normal == best.normal;
-        if (!same_face) hits[lane].normal = normal_at_best();
+        if (same_face) return;
+        hits[lane].normal = normal_at_best();
+        // The sheet's other face was met.
+        const Vec3& to_far_side = hits[lane].to_far_side;
+        if (glm::dot(to_far_side, ray.direction) < 0) hits[lane].to_far_side = -to_far_side;
         return;
     }
     const auto way = packet_->ways.begin();

@@ -3,7 +3,6 @@
 // Choice of the parts of a model that rays look into, and the parts' places in the world. Neither depends on
 // the rays. Only traversal.cpp includes this.
 
-#include <algorithm>
 #include <cmath>
 
 #include <glm/common.hpp>
@@ -21,7 +20,7 @@ struct Traversal::Places {
     const RayRange range;
 
     /// Where the edge's child lies in the world.
-    GRAFTAL_INLINE void place_child(const Place& parent, const TraceEdge& edge,
+    GRAFTAL_INLINE void place_child(const Frame& parent, const TraceEdge& edge,
                                     LaneMap& world_from_child) const {
         if (!edge.upright) return compose(parent.world_from_node, edge.parent_from_child, world_from_child);
         const Double4 scale = splat(edge.parent_from_child.column[0][0]);
@@ -33,11 +32,11 @@ struct Traversal::Places {
 
     /// Goes to the child of an edge; false if it is nothing. Sets all of the child except its flatness.
     GRAFTAL_INLINE bool go_to_child(const TraceEdge& edge, const TraceNode& node, std::uint32_t number,
-                                    const Place& parent, Place& child) const {
+                                    const Frame& parent, Frame& child) const {
         place_child(parent, edge, child.world_from_node);
         child.edge = number | (parent.cut ? from_cut : 0);
         child.node = edge.child;
-        child.steps = parent.steps == unlimited_steps ? parent.steps : parent.steps - edge.levels;
+        child.steps = steps_below(parent.steps, edge);
         child.scale =
             edge.similarity ? parent.scale * edge.stretch : largest_stretch(linear_of(child.world_from_node));
         if (!(child.scale > least_scale)) return false;
@@ -52,18 +51,18 @@ struct Traversal::Places {
         return true;
     }
 
-    GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const Place& frame, double radius) const {
+    GRAFTAL_INLINE Ball world_ball(const TraceNode& node, const Frame& frame, double radius) const {
         return {vec3_of(point_through(frame.world_from_node, node.ball_centre)), frame.scale * radius};
     }
 
-    GRAFTAL_INLINE double detail_of(const TraceNode& node, const Place& frame) const {
+    GRAFTAL_INLINE double detail_of(const TraceNode& node, const Frame& frame) const {
         const Ball ball = world_ball(node, frame, node.ball_radius);
         return 2 * ball.radius * model.projection.detail_per_unit(ball);
     }
 
     /// The rule of the cut (detail/graph/piece_kind.h). `least_detail`: of a unit, anywhere in the node's
     /// ball. Sets the detail if it has to look.
-    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Place& frame, double least_detail,
+    GRAFTAL_INLINE bool is_cut(const TraceNode& node, const Frame& frame, double least_detail,
                                double& detail) const {
         if (self.hurries_ && node.cullable) return true;
         const double diameter = 2 * frame.scale * node.ball_radius;
@@ -73,14 +72,14 @@ struct Traversal::Places {
     }
 
     /// Whether copies lie in each other in it so often that its shell is drawn.
-    GRAFTAL_INLINE bool is_shell(const TraceNode& node, const Place& frame) const {
+    GRAFTAL_INLINE bool is_shell(const TraceNode& node, const Frame& frame) const {
         if (!model.has_shells || frame.cut || !node.shell.any()) return false;
         return node.shell.has(detail_of(node, frame));
     }
 
     /// The parts that are farthest down, of those that are drawn for sure if none is cut; or what is drawn of
     /// them, if all of them are.
-    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, Place& frame) const {
+    GRAFTAL_INLINE std::uint32_t tree_of(const TraceNode& node, Frame& frame) const {
         if (model.has_shells || node.unrolling_count == 0) return node.tree;
         double most = INFINITY;
         bool known = false;
@@ -107,14 +106,14 @@ struct Traversal::Places {
     }
 
     /// Largest reach of a shell out of the boxes of its parts, in the frame.
-    GRAFTAL_INLINE double shell_margin(const TraceNode& node, const Place& frame) const {
+    GRAFTAL_INLINE double shell_margin(const TraceNode& node, const Frame& frame) const {
         return 1.5 /
                (frame.scale * model.projection.detail_per_unit(world_ball(node, frame, node.ball_radius)));
     }
 
     /// Largest reach of parts out of their boxes, in the frame: parts that are too thin are drawn wider
     /// (least_width.h).
-    GRAFTAL_INLINE Vec3 margin_of(const TraceNode& node, const Place& frame) const {
+    GRAFTAL_INLINE Vec3 margin_of(const TraceNode& node, const Frame& frame) const {
         constexpr double flat = 1e-3; // some levels below, parts may be flat enough
         if (!node.widens && frame.flatness > flat) return Vec3(0.0);
         constexpr double unculled = 4e-3; // more than half_width_needed() gives

@@ -9,21 +9,6 @@
 
 namespace graftal {
 
-/// Takes a ray into the frame of a run's body, where its direction's largest component is 1; it was
-/// `largest`. False if that is no map. Requires that the body's axes are at right angles.
-inline bool take_into_body(const Affine& run_from_body, const Ray& ray, Ray& inner, double& largest) {
-    // Dividing by the squares of the axes' lengths turns the map round.
-    const Mat3& m = run_from_body.linear;
-    const Vec3 squares(glm::dot(m[0], m[0]), glm::dot(m[1], m[1]), glm::dot(m[2], m[2]));
-    const Vec3 from_base = ray.origin - run_from_body.translation;
-    inner.origin = from_base * m / squares;
-    const Vec3 direction = ray.direction * m / squares;
-    largest = largest_component(lanes_of(direction));
-    if (!(largest > 0 && largest < 1 / least_scale)) return false;
-    inner.direction = direction / largest;
-    return true;
-}
-
 template<Instructions instructions, bool any>
 void Traversal::Kernel<instructions, any>::meet_item(const Entry& entry) {
     depth = entry.frame + 1;
@@ -47,9 +32,13 @@ void Traversal::Kernel<instructions, any>::meet_body(RunShape shape, const Affin
                                                      const TraceRun& run, std::uint16_t colour,
                                                      const Ray& ray, const Entry& entry) {
     const Frame& frame = frames[entry.frame];
-    Ray inner;
-    double largest;
-    if (!take_into_body(run_from_body, ray, inner, largest)) return;
+    // The axes are at right angles: dividing by the squares of their lengths turns the map round.
+    const Mat3& m = run_from_body.linear;
+    const Vec3 squares(glm::dot(m[0], m[0]), glm::dot(m[1], m[1]), glm::dot(m[2], m[2]));
+    const Vec3 direction = ray.direction * m / squares;
+    const double largest = largest_component(lanes_of(direction));
+    if (!(largest > 0 && largest < 1 / least_scale)) return;
+    const Ray inner{(ray.origin - run_from_body.translation) * m / squares, direction / largest};
     const double base = t_of(entry), speed = frame.speed * largest;
     RayRange near = range_from(base, speed);
     PrimitiveHit hit;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <glm/geometric.hpp>
 
 #include "compiler/primitives/part_size.h"
+#include "compiler/primitives/sheet.h"
 #include "compiler/primitives/solid.h"
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
@@ -200,6 +202,22 @@ Vec3 Traversal::normal_at_best() const {
     return limit_normal_in_world(model_, path_, normal, ray_(best_.t));
 }
 
+const Primitive& Traversal::primitive_at_best() const {
+    return model_.nodes[model_.edges[way_.back() & ~from_cut].child].primitive;
+}
+
+Vec3 Traversal::to_far_side_at_best() const {
+    if (best_.mesh_colour || best_.is_upright) return Vec3(0.0);
+    const bool is_proxy = best_.proxy_node != no_edge;
+    const Primitive primitive = is_proxy ? Primitive(PrimitiveKind::sphere) : primitive_at_best();
+    // A sheet without thickness is drawn wider.
+    constexpr double thickest_of_wide = 0.5;
+    const auto sheet = sheet_of(primitive, best_.world_from_leaf.affine().linear,
+                                best_.in_world ? thickest_of_wide : thickest_sheet);
+    if (!sheet) return Vec3(0.0);
+    return std::copysign(sheet->thickness, glm::dot(sheet->normal, ray_.direction)) * sheet->normal;
+}
+
 /// Share of light at a hit that stands for a culled part.
 double Traversal::light_share_at_best() const {
     const double error_px = model_.projection.error_px();
@@ -256,16 +274,16 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
     } else if (best_.proxy_node == no_edge && material && model_.textures.of_material[*material])
         inherited = colour_of(texel(*material, way_.back(), best_.turns, best_.point));
     if (best_.proxy_node != no_edge) {
-        const CutNode& stands_for = model_.source(best_.proxy_node);
+        const DetailNode& stands_for = model_.source(best_.proxy_node);
         inherited = colour_of_proxy(stands_for).over(inherited);
         if (stands_for.finish) hit.material = &materials[*stands_for.finish];
     }
     hit.t = best_.t;
     hit.normal = best_.inverted ? -normal_at_best() : normal_at_best();
     hit.light_share = light_share_at_best();
+    hit.to_far_side = hit.material->translucency > 0 ? to_far_side_at_best() : Vec3(0.0);
     if (best_.proxy_node == no_edge && !best_.mesh_colour && hit.material->pattern) {
-        const Primitive& primitive = model_.nodes[model_.edges[way_.back() & ~from_cut].child].primitive;
-        const double size = part_size(primitive, best_.world_from_leaf.affine().linear);
+        const double size = part_size(primitive_at_best(), best_.world_from_leaf.affine().linear);
         inherited = pattern_at_best(*hit.material, pattern_size(size), hit.normal);
     }
     hit.rgb = tint.over(inherited);

@@ -89,8 +89,8 @@ class Traversal final : public Surfaces {
         double speed = 1; ///< 1 / unit
     };
 
-    /// An object on the way from the root, wherever the ray is.
-    struct alignas(32) Place {
+    /// An object on the way from the root, and the ray in its frame.
+    struct alignas(32) Frame : LocalRay {
         LaneMap world_from_node;
         double scale = 1;        ///< norm of world_from_node
         double flatness = 1;     ///< at most its least stretch, as a share of the largest
@@ -103,11 +103,7 @@ class Traversal final : public Surfaces {
         bool faint = false;  ///< they stand for a set without area (least_width.h)
         bool specks = false; ///< they lead to nodes that are cut and faint
         Vec3 margin{0.0};    ///< largest reach of parts out of their boxes
-    };
-
-    /// A place on the way, and the ray in its frame.
-    struct alignas(32) Frame : LocalRay, Place {
-        float least = 0; ///< where the ray begins, in units from the base
+        float least = 0;     ///< where the ray begins, in units from the base
         /// Values by axis: the side of boxes where the ray goes in; the origin less the margin, for that
         /// side and for the other; and the reciprocal of the direction.
         Int4 side_in;
@@ -169,6 +165,13 @@ class Traversal final : public Surfaces {
         bool in_world = false; ///< the proxy was met there: so are its normal and point
         bool crushed = false;  ///< a crushed part shows the proxies' own normals
         bool inverted = false; ///< the inner side of what a difference takes away
+
+        /// Takes another hit, as one of a primitive in its frame: whoever meets it says where it differs.
+        void renew() {
+            found = true;
+            mesh_colour = nullptr;
+            is_upright = in_world = crushed = inverted = false;
+        }
     };
 
     /// Boundaries that a ray asks for.
@@ -206,7 +209,6 @@ class Traversal final : public Surfaces {
     void meet_flat_part(const FlatPart& part, const RayRange& range, std::uint32_t frame_number);
     /// The parts of what holds planes, which has no bounds.
     void push_flat_parts(const FlatPart& part, const TraceNode& node);
-    bool meet_flat_plane(const FlatPart& part, const RayRange& range);
     void meet_flat_items(const FlatPart& part, const Ball& ball, const RayRange& range,
                          std::uint32_t frame_number);
     /// The edges to a part that was met in the world.
@@ -233,7 +235,6 @@ class Traversal final : public Surfaces {
     void keep_way(std::uint32_t frame_number);
     /// Fills in what is seen at the best hit.
     void show_best(SurfaceHit& hit);
-    bool go_together(std::size_t rays) const;
     std::uint32_t run_packet(std::span<const Ray> rays, const RayRange& range, std::uint32_t& to_go_alone);
     void show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceHit> hits);
     template<template<Instructions, bool> typename AnyKernel, bool any, typename... From>
@@ -281,6 +282,8 @@ class Traversal final : public Surfaces {
     void look_along(std::uint32_t step, WayLook& look, SurfaceHit& hit) const;
     void surface_at_best(SurfaceHit& hit) const;
     Vec3 normal_at_best() const;
+    const Primitive& primitive_at_best() const; ///< unless a proxy or a shell was met
+    Vec3 to_far_side_at_best() const;           ///< SurfaceHit's
     Rgb pattern_at_best(const Material& material, double size, Vec3& normal) const;
     double light_share_at_best() const;
     /// The material that an edge gives, the nearest to its child if it stands for several.

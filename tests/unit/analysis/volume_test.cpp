@@ -78,6 +78,21 @@ TEST(Volume, OfAnIntersectionIsThatOfAPartThatTheOthersHold) {
         2 + 1e-9);
 }
 
+TEST(Volume, OfAnIntersectionOfVeryManyPartsIsOnlyBounded) {
+    const auto nested = [](int count) {
+        std::vector<std::pair<Primitive, Affine>> cubes;
+        for (int i = 0; i < count; ++i)
+            cubes.push_back({cube, Affine::scale(Vec3(2.0 - static_cast<double>(i) / count))});
+        return volume(combination(Combination::intersect, cubes));
+    };
+    const double smallest = 8 * 1.001 * 1.001 * 1.001;
+    expect_exact(nested(1000), smallest);
+    // Each would be held against each.
+    const VolumeRange many = nested(2000);
+    EXPECT_EQ(many.least, 0);
+    EXPECT_LE(many.most, smallest);
+}
+
 TEST(Volume, OfLimitsWithoutVolumeIsZero) {
     for (const auto& maps : {menger_maps(), sierpinski_tetrahedron(), sierpinski_triangle()})
         expect_exact(volume(ifs(maps)), 0);
@@ -88,6 +103,31 @@ TEST(Volume, OfLevelsIsThatOfTheirTerminals) {
     graph.objects[0].terminal = instance(graph.primitive(cube), {});
     for (const unsigned steps : {0u, 1u, 2u, 7u, 40u})
         expect_exact(volume(graph, steps), 8 * std::pow(20.0 / 27, steps));
+}
+
+/// The limit set touches the faces of the terminal's cube in their middles, and its ball cuts the corners
+/// off.
+TEST(Volume, OfTerminalsThatReachOutOfTheBallOfTheLimit) {
+    const auto pair_of = [](const Primitive& terminal, double apart) {
+        Graph graph = empty_graph();
+        const ObjectId self = graph.add(named("self"));
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double sign : {-0.5, 0.5}) {
+                Vec3 to(0.0);
+                to[axis] = sign;
+                place(graph, self, self, Affine::translate(to) * Affine::scale(Vec3(0.5)));
+            }
+        graph.objects[self].terminal = instance(graph.primitive(terminal), {});
+        place(graph, graph.root, self, {});
+        place(graph, graph.root, self, Affine::translate(Vec3(apart)));
+        graph.objects[graph.root].terminal = instance(graph.primitive(ball), Affine::scale(Vec3(0.5)));
+        return volume(graph, 1);
+    };
+    const VolumeRange cubes = pair_of(cube, 1.2); // which have a cube of 0.8 in common
+    EXPECT_LE(cubes.least, 16 - 0.512);
+    EXPECT_GE(cubes.most, 16 - 0.512);
+    expect_exact(pair_of(cube, 2), 16);
+    expect_exact(pair_of(ball, 1.2), 2 * 4 * pi / 3);
 }
 
 /// A ball, and copies of all of it aside: a geometric series.

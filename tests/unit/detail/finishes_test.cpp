@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/shadow/lit_colours.h"
 
 namespace graftal {
@@ -30,9 +30,9 @@ class Finishes : public testing::Test {
     };
 
     NodeId add(std::initializer_list<Seen> parts) {
-        CutNode& node = cut.nodes.emplace_back();
+        DetailNode& node = cut.nodes.emplace_back();
         for (const Seen& part : parts) {
-            CutEdge& edge = node.edges.emplace_back();
+            DetailEdge& edge = node.edges.emplace_back();
             edge.child = part.child;
             edge.weight = part.weight;
             edge.material = part.material;
@@ -45,7 +45,7 @@ class Finishes : public testing::Test {
         return cut.nodes[node].finish;
     }
 
-    CutGraph cut;
+    DetailGraph cut;
 };
 
 TEST_F(Finishes, AreOfTheMaterialThatIsSeenMost) {

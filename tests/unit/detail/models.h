@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/analysis/bounding.h"
-#include "compiler/detail/graph/build_cut_graph.h"
+#include "compiler/detail/graph/build_detail_graph.h"
 #include "compiler/graph/components.h"
 #include "compiler/graph/graph.h"
 #include "compiler/passes/pipeline.h"
@@ -99,9 +99,9 @@ inline std::vector<ObjectBounds> bounds_of(const Graph& graph) {
 }
 
 /// The cut of a graph after the passes for detail.
-inline CutGraph cut_of(const Graph& graph) {
+inline DetailGraph cut_of(const Graph& graph) {
     BoundedGraph passed = run_passes(detail_passes(), {graph, bounds_of(graph)});
-    return build_cut_graph(std::move(passed.graph), passed.bounds);
+    return build_detail_graph(std::move(passed.graph), passed.bounds);
 }
 
 } // namespace graftal::test

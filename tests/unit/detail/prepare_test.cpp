@@ -28,8 +28,8 @@ TEST(PrepareCut, KeepsLevelsThatInstancesState) {
     const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));
     DetailOptions options;
     options.steps = 5;
-    const PreparedCut prepared = prepare_cut(graph, components, bounds, options.preparing());
-    const CutNode& root = prepared.cut.nodes[prepared.cut.root];
+    const PreparedGraph prepared = prepare_graph(graph, components, bounds, options.preparing());
+    const DetailNode& root = prepared.cut.nodes[prepared.cut.root];
     ASSERT_EQ(root.edges.size(), 1u);
     EXPECT_EQ(root.edges[0].levels, 3u);
     EXPECT_EQ(prepared.root_steps, 5u);

@@ -20,13 +20,13 @@
 namespace graftal {
 namespace {
 
-CutGraph with_proxies(const Graph& graph) {
-    CutGraph cut = test::cut_of(graph);
+DetailGraph with_proxies(const Graph& graph) {
+    DetailGraph cut = test::cut_of(graph);
     fit_proxies(cut, find_symmetry(cut));
     return cut;
 }
 
-SelfShadows measured(CutGraph cut, const View& view) {
+SelfShadows measured(DetailGraph cut, const View& view) {
     const Symmetry symmetry = find_symmetry(cut);
     return measure_self_shadows(cut, symmetry, unlimited_steps, view, true, 64);
 }
@@ -81,8 +81,8 @@ std::vector<Affine> sponge() {
 }
 
 /// The nearest of all leaves, one by one.
-std::optional<double> nearest_leaf(const CutGraph& cut, NodeId id, const Affine& place, const Ray& ray) {
-    const CutNode& node = cut.nodes[id];
+std::optional<double> nearest_leaf(const DetailGraph& cut, NodeId id, const Affine& place, const Ray& ray) {
+    const DetailNode& node = cut.nodes[id];
     std::optional<double> best;
     if (node.primitive) {
         const Affine from_world = inverse(place);
@@ -93,7 +93,7 @@ std::optional<double> nearest_leaf(const CutGraph& cut, NodeId id, const Affine&
             best = hit.t / speed;
         return best;
     }
-    for (const CutEdge& edge : node.edges) {
+    for (const DetailEdge& edge : node.edges) {
         const auto t = nearest_leaf(cut, edge.child, place * edge.node_from_child, ray);
         if (t && !(best && *best < *t)) best = t;
     }
@@ -101,7 +101,7 @@ std::optional<double> nearest_leaf(const CutGraph& cut, NodeId id, const Affine&
 }
 
 TEST(PartRays, MeetWhatTheLeavesOneByOneDo) {
-    const CutGraph cut = with_proxies(nested(PrimitiveKind::cube, sponge(), 3));
+    const DetailGraph cut = with_proxies(nested(PrimitiveKind::cube, sponge(), 3));
     const View view = view_of(1);
     DetailOptions options;
     options.error_px = 1e-3; // nothing is culled
@@ -142,7 +142,7 @@ TEST(PartRays, StepsInAMeshAreWork) {
     }
     const Primitive mesh{PrimitiveKind::mesh,
                          std::make_shared<const TriangleMesh>("slivers", std::move(data))};
-    const CutGraph cut = with_proxies(nested(mesh, {Affine()}, 1));
+    const DetailGraph cut = with_proxies(nested(mesh, {Affine()}, 1));
     const View view = view_of(1);
     const Projection projection(view, {}, 1e-3, nearest_to_eye(cut));
     PartRays rays(cut, projection, unlimited_steps, 0, true);
@@ -154,14 +154,14 @@ TEST(PartRays, StepsInAMeshAreWork) {
 
 // The cubes measure 1.6 pixels, and what is culled at 4 consists of several.
 TEST(SelfShadow, AFlatPlateKeepsItsLight) {
-    const CutGraph cut = with_proxies(nested(PrimitiveKind::cube, plate(), 6));
+    const DetailGraph cut = with_proxies(nested(PrimitiveKind::cube, plate(), 6));
     const SelfShadows shadows = measured(cut, view_of(2.5));
     for (NodeId id = 0; id < cut.nodes.size(); ++id)
         EXPECT_NEAR(shadows.share(id, 4), 1, 1.0 / 16) << cut.nodes[id].name;
 }
 
 TEST(SelfShadow, APoundSignKeepsLessTheLargerItIs) {
-    const CutGraph cut = with_proxies(test::pound_sign(3, false));
+    const DetailGraph cut = with_proxies(test::pound_sign(3, false));
     const SelfShadows shadows = measured(cut, view_of(3));
     const double one = shadows.share(cut.root, 1), two = shadows.share(cut.root, 2);
     EXPECT_LT(one, 0.99);
@@ -177,7 +177,7 @@ TEST(SelfShadow, APoundSignKeepsLessTheLargerItIs) {
 
 // By other rays than those it was measured by: the mean light at 4 pixels, with the shares, and at 0.5.
 TEST(SelfShadow, MakesTheMeanLightThatOfFinerParts) {
-    const CutGraph cut = with_proxies(test::pound_sign(3, false));
+    const DetailGraph cut = with_proxies(test::pound_sign(3, false));
     const View view = view_of(3);
     const SelfShadows shadows = measured(cut, view);
     const auto light = [&](double error_px, bool shared) {
@@ -206,7 +206,7 @@ TEST(SelfShadow, MakesTheMeanLightThatOfFinerParts) {
 }
 
 TEST(SelfShadow, WithoutLightsThatThrowShadowsNothingIsTaken) {
-    const CutGraph cut = with_proxies(nested(PrimitiveKind::cube, sponge(), 3));
+    const DetailGraph cut = with_proxies(nested(PrimitiveKind::cube, sponge(), 3));
     View view = view_of(3);
     view.lights[0].shadowless = true;
     const SelfShadows shadows = measured(cut, view);
@@ -221,7 +221,7 @@ TEST(SelfShadow, WorkIsLimited) {
     for (int i = 0; i < 30'000; ++i)
         crowd.instances.push_back({graph.root, Affine::scale(Vec3(1 - 1e-6 * i)), {}, {}, {}});
     graph.root = graph.add(std::move(crowd));
-    CutGraph cut = test::cut_of(graph);
+    DetailGraph cut = test::cut_of(graph);
     const SelfShadows shadows = measured(cut, view_of(3));
     EXPECT_GT(shadows.work(), 0u);
     EXPECT_LT(shadows.work(), most_self_shadow_work + 1'000'000);

@@ -55,6 +55,12 @@ TEST(Complete, SymbolsOfStrings) {
     EXPECT_EQ(offered("m.lsys", "lsys a {\n  environment sh`\n}", '`'), "shade shadows");
 }
 
+TEST(Complete, BracketsAndColonsOfCommentsDoNotCount) {
+    EXPECT_EQ(offered("m.lsys", "lsys a {\n  axiom F[ # one ( two\n    F@G`]\n}", '`'), "@Gs @Gc @Ge");
+    EXPECT_EQ(offered("m.lsys", "lsys a {\n  axiom F(1 /* ) */)F//(2)@G`\n}", '`'), "@Gs @Gc @Ge");
+    EXPECT_EQ(offered("m.lsys", "lsys a {\n  let grow = 2\n  axiom F(1 /* ) */ + gr`)\n}", '`'), "grow");
+}
+
 TEST(Complete, NothingInCommentsAndQuotes) {
     EXPECT_EQ(offered("m.rifs", "rifs a { # co^\n }"), "");
     EXPECT_EQ(offered("m.rifs", "rifs a { // co^\n }"), "");

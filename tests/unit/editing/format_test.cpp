@@ -29,6 +29,13 @@ TEST(Format, MapsAndColumns) {
               "rifs a {\n  codes 2d {\n     .5 -.26 0 .5 0 0\n    -.5 - .26 0 .5 0 0 1\n  }\n}\n");
 }
 
+TEST(Format, SignsBehindCommasAndColons) {
+    EXPECT_EQ(laid_out("m.inst", "object a {\ncube\ntranslate:-1,-2,+3\nrotate:<0,-1,0>,90\n}"),
+              "object a {\n    cube\n    translate: -1, -2, +3\n    rotate: <0, -1, 0>, 90\n}\n");
+    EXPECT_EQ(laid_out("m.rifs", "rifs a {\nmap b{scale 1/2 translate 1,-1}\n}"),
+              "rifs a {\n  map b { scale 1/2 translate 1, -1 }\n}\n");
+}
+
 TEST(Format, LSystems) {
     EXPECT_EQ(laid_out("m.lsys", "lsys a{\n axiom F[+A]  \n\n\n    A->F[\n      +A\n    ][-A]   # twig\n"
                                  "  interpret {\nA --> @O\n  }\n }\n\n"),

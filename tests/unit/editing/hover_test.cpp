@@ -42,6 +42,14 @@ TEST(Hover, NamesOfTheText) {
               "gold: **material** `gold`\n\nA material that every model knows.");
 }
 
+TEST(Hover, CommentsAreNoMarkdown) {
+    const std::string map = "map b { scale 1/2 # ```` ![a](https://b/c)\n }";
+    const std::string text = "rifs a { " + map + " }";
+    const auto found = hover(Document("m.rifs", text), static_cast<std::uint32_t>(text.find("b {")));
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->text, "**map** `b`\n\n`````rifs\n" + map + "\n`````");
+}
+
 TEST(Hover, SizesOfObjects) {
     const std::string text = "canonical object half { instance: cube scale: 1/2 }\n"
                              "object a { instance: half instance: half translate: 2, 0, 0 }";

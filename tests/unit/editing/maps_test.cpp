@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <gtest/gtest.h>
 
 #include "compiler/session/session.h"
@@ -112,6 +113,21 @@ TEST(Maps, KeepTheFormInWhichTheyAreWritten) {
     EXPECT_EQ(moved_to("m.inst", "object a { cube\n  scale: 0.5 # half\n  translate: 1, 0, 0\n}", "a/cube",
                        Affine{Mat3(.5, .1, 0, 0, .5, .2, 0, 0, .5), {1, 0, 0}}),
               "object a { cube\n  matrix: 0.5, 0, 0, 1, 0.1, 0.5, 0, 0, 0, 0.2, 0.5, 0 # half\n  \n}");
+}
+
+TEST(Maps, CommentsAmongTheNumbersStay) {
+    const auto moved = [](const std::string& list, const Mat3& linear) {
+        const std::string text = "rifs r { map a { " + list + " } }";
+        const MapChange change = move_map(Document("m.rifs", text), "a", {linear, Vec3(0.0)});
+        EXPECT_EQ(change.refusal, "");
+        return applied(text, change.edits);
+    };
+    const Mat3 sheared(0.5, 0.25, 0, 0, 0.5, 0.25, 0, 0, 0.5); // by columns
+    EXPECT_EQ(
+        moved("rotate z, 10  scale 1/2, /* high */ 1/4 # both\n", sheared),
+        "rifs r { map a { matrix 0.5, 0, 0, 0, 0.25, 0.5, 0, 0, 0, 0.25, 0.5, 0   /* high */  # both\n } }");
+    EXPECT_EQ(moved("scale 1/2, /* high */ 1/4  rotate x, 90", Mat3(0.5, 0, 0, 0, 0, 0.25, 0, -0.125, 0)),
+              "rifs r { map a { scale 0.5, 0.25, 0.125 /* high */   rotate x, 90 } }");
 }
 
 TEST(Maps, RefusesWhatATextCannotSay) {
@@ -262,6 +278,16 @@ TEST(Maps, ADragOfNothingChangesNothing) {
     EXPECT_EQ(after, "rifs a {\n  map m { scale 1/3  rotate z, 20.123456789  translate <0.243, 0.5> }\n}\n");
 }
 
+TEST(Maps, ANumberThatADragOnlyGrazesStays) {
+    const std::string text = "rifs a {\n  codes 2d {\n    m: .85 .04 -.04 .85 0 1.6\n  }\n}\n";
+    Affine wanted = maps_of(Document("m.rifs", text)).front().matrix;
+    wanted.linear[0][0] = 0.9;
+    wanted.translation.y = 1.5999999999998888; // as sums of a page have it
+    const std::string after =
+        applied(text, move_map(Document("m.rifs", text), "m", wanted, {}, {0.004, {}}).edits);
+    EXPECT_EQ(after, "rifs a {\n  codes 2d {\n    m: 0.9 .04 -.04 .85 0 1.6\n  }\n}\n");
+}
+
 TEST(Pull, AHandWritesTheDigitsThatItTells) {
     const std::string text =
         "let lean = 0.2\nrifs a {\n  map m { scale 1/2  translate <lean, 0.123456789> }\n"
@@ -357,6 +383,21 @@ TEST(Pull, FiniteAddressesKeepTheirPlaceInTheLastObject) {
     EXPECT_LT(largest_entry(map(map(local)) - to), 1e-9) << after;
 }
 
+TEST(Pull, AddsToTheWholeOfAComparison) {
+    const auto pulled = [](const std::string& number) {
+        const std::string text = "let k = 1\nrifs r { map a { scale 1/2 translate " + number + ", 0 } }";
+        const MapChange change = pull(Document("m.rifs", text), "(a)*", Vec3(0.0), {2.5, 0, 0});
+        const std::vector<EditableMap> maps = maps_of(Document("m.rifs", applied(text, change.edits)));
+        EXPECT_EQ(maps.size(), 1u);
+        const Affine map = maps.empty() ? Affine() : maps.front().matrix;
+        EXPECT_NEAR((glm::inverse(Mat3(1.0) - map.linear) * map.translation).x, 2.5, 1e-9) << number;
+    };
+    pulled("k");
+    pulled("(k<2)");
+    pulled("k<2");
+    pulled("(k<2)==(k<3)");
+}
+
 TEST(Pull, RefusesWhatItCannot) {
     const Document document("m.rifs", "rifs a { map b { scale 1/2 } map c { scale 1/2 translate 1, 0 } }");
     EXPECT_EQ(pull(document, "b..", {}, {}).refusal.substr(0, 27), "The address cannot be read:");
@@ -395,6 +436,32 @@ TEST(Edges, ChangeInTheFormOfTheDigraph) {
               "refused: The entries of this matrix are probabilities: each row has its sum.");
     EXPECT_EQ(with_edge(maps + " }", "a", "d", false),
               "refused: There are no maps 'a' and 'd' in one block.");
+}
+
+TEST(Edges, ThatAreWrittenTwiceGoWithTheirCommas) {
+    const std::string maps = "rifs r { map a { scale 1/2 } map b { scale 1/3 } map c { scale 1/4 }";
+    EXPECT_EQ(with_edge(maps + " follow { a -> b, a -> b  c -> a } }", "a", "b", false),
+              maps + " follow {    c -> a } }");
+    EXPECT_EQ(with_edge(maps + " follow { a -> b, a -> b, c -> a } }", "a", "b", false),
+              maps + " follow {   c -> a } }");
+    EXPECT_EQ(with_edge(maps + " follow { c -> a, a -> b, a -> b } }", "a", "b", false),
+              maps + " follow { c -> a } }");
+}
+
+TEST(Edges, LeaveCommentsAlone) {
+    const std::string maps = "rifs r { map a { scale 1/2 } map b { scale 1/3 } map c { scale 1/4 }";
+    EXPECT_EQ(with_edge(maps + " follow { a -> b # one,\n c -> a  b -> b } }", "c", "a", false),
+              maps + " follow { a -> b # one,\n   b -> b } }");
+    EXPECT_EQ(with_edge(maps + " follow { a -> b, # one\n c -> a } }", "c", "a", false),
+              maps + " follow { a -> b # one\n  } }");
+    EXPECT_EQ(with_edge(maps + " follow { a -> b /* one */, c -> a } }", "a", "b", false),
+              maps + " follow {  /* one */ c -> a } }");
+    EXPECT_EQ(with_edge(maps + " follow all /* except a */ except a -> b }", "a", "b", true),
+              maps + " follow all /* except a */  }");
+    EXPECT_EQ(with_edge(maps + " follow all except self /* self */ }", "b", "b", true),
+              maps + " follow all except { a -> a  c -> c } /* self */ }");
+    EXPECT_EQ(with_edge(maps + " follow { /* {} */ } }", "b", "b", true),
+              maps + " follow { b -> b  /* {} */ } }");
 }
 
 TEST(Edges, EachToggleOfEachFormReadsBack) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -261,6 +262,31 @@ TEST(Formats, NameMaterialsPicturesAndLight) {
                 testing::ContainsRegex("\"infinite\" \"rgb L\" \\[ (1|0\\.99999999)")); // the mean
 }
 
+/// Without that, the copy of one picture would be written over another.
+TEST(Formats, CopyPicturesBesideThoseOfTheModel) {
+    Exporting exporting("m.inst",
+                        "material a { texture: \"bark.png\" }\n"
+                        "material b { texture: \"m_bark.png\" }\n"
+                        "object m {\n cube material: a\n cube material: b  translate: 3, 0, 0\n}\n");
+    std::vector<std::string> before;
+    for (const auto& [name, red] : {std::pair("bark.png", 200), {"m_bark.png", 100}}) {
+        Texture picture;
+        picture.width = picture.height = 1;
+        picture.texels = {{{static_cast<std::uint8_t>(red), 0, 0}, false}};
+        PendingFile file(exporting.path(name));
+        ASSERT_TRUE(write_texture(file, picture).ok());
+        ASSERT_TRUE(file.commit().ok());
+        before.push_back(exporting.read(name));
+    }
+    ASSERT_TRUE(exporting.to("m.obj")) << exporting.said();
+    EXPECT_EQ(exporting.files(), "bark.png m.inst m.mtl m.obj m_bark.png m_bark_2.png m_m_bark.png");
+    EXPECT_EQ(exporting.read("bark.png"), before[0]);
+    EXPECT_EQ(exporting.read("m_bark.png"), before[1]);
+    EXPECT_EQ(exporting.read("m_bark_2.png"), before[0]);
+    EXPECT_EQ(exporting.read("m_m_bark.png"), before[1]);
+    EXPECT_THAT(exporting.read("m.mtl"), HasSubstr("map_Kd m_bark_2.png\n"));
+}
+
 // Corners of one height were compared with each other, all with all.
 TEST(FlatFiles, HoldManyTrianglesInAPlane) {
     constexpr int steps = 40000;
@@ -271,6 +297,93 @@ TEST(FlatFiles, HoldManyTrianglesInAPlane) {
     ASSERT_TRUE(write_text(exporting.path("strip.obj"), strip).ok());
     ASSERT_TRUE(exporting.to("m.stl")) << exporting.said();
     EXPECT_EQ(exporting.read("m.stl").size(), 84u + 50u * 2 * steps);
+}
+
+/// The lines of a file that begin with a word, without it.
+std::vector<std::string> lines_after(const std::string& text, const std::string& word) {
+    std::vector<std::string> lines;
+    for (std::size_t at = 0, end = 0; at < text.size(); at = end + 1) {
+        end = std::min(text.find('\n', at), text.size());
+        if (text.compare(at, word.size(), word) == 0)
+            lines.push_back(text.substr(at + word.size(), end - at));
+    }
+    return lines;
+}
+
+/// The length of the longest list of vectors that a text has behind these words.
+std::size_t most_listed(const std::string& text, const std::string& words) {
+    std::size_t most = 0;
+    for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) {
+        const std::string list =
+            text.substr(at + words.size(), text.find(']', at + words.size()) - at - words.size());
+        most = std::max(most, static_cast<std::size_t>(std::ranges::count(list, '(')));
+    }
+    return most;
+}
+
+/// Puts the picture bark.png beside the model.
+void write_bark(const Exporting& exporting) {
+    Texture picture;
+    picture.width = picture.height = 1;
+    picture.texels = {{{200, 100, 50}, false}};
+    PendingFile file(exporting.path("bark.png"));
+    EXPECT_TRUE(write_texture(file, picture).ok());
+    EXPECT_TRUE(file.commit().ok());
+}
+
+/// A picture makes no soup of triangles: corners that agree in place, normal and texture point are one
+/// vertex.
+TEST(Formats, ShareTheVerticesOfWhatHasAPicture) {
+    const std::string bark = "material bark { texture: \"bark.png\" }\n";
+    const std::pair<std::string, std::string> models[] = {
+        {"cube.inst", bark + "object m { cube material: bark }\n"},
+        {"round.inst", bark + "object m { cylinder material: bark }\n"},
+        {"skin.lsys",
+         bark + "lsys m {\n skin 0.05\n width 0.4\n colors bark\n steps 0\n axiom F+(20)F\n}\n"}};
+    for (const auto& [name, text] : models) {
+        Exporting exporting(name, text);
+        write_bark(exporting);
+        for (const char* const written : {"m.obj", "m.ply", "m.usda", "m.gltf"})
+            ASSERT_TRUE(exporting.to(written)) << exporting.said();
+        const std::string obj = exporting.read("m.obj");
+        const std::vector<std::string> places = lines_after(obj, "v "), normals = lines_after(obj, "vn "),
+                                       points = lines_after(obj, "vt ");
+        const std::size_t triangles = lines_after(obj, "f ").size(), vertices = places.size();
+        ASSERT_EQ(normals.size(), vertices);
+        ASSERT_EQ(points.size(), vertices);
+        std::set<std::string> different;
+        for (std::size_t i = 0; i < vertices; ++i)
+            different.insert(places[i] + normals[i] + points[i]);
+        EXPECT_EQ(different.size(), vertices) << name;
+        EXPECT_LE(vertices, 2 * triangles) << name;
+        if (name == "cube.inst") {
+            EXPECT_EQ(vertices, 24u); // four a face
+        }
+        if (name == "skin.lsys") {
+            EXPECT_LT(vertices, triangles); // of a closed surface half as many, without its seams
+        }
+        const auto head = exporting.read("m.ply").substr(0, 1000);
+        EXPECT_THAT(head, HasSubstr(fmt::format("element vertex {}\n", vertices)));
+        EXPECT_THAT(head, HasSubstr(fmt::format("element face {}\n", triangles)));
+        const std::string usd = exporting.read("m.usda");
+        EXPECT_EQ(most_listed(usd, "point3f[] points = ["), most_listed(usd, "texCoord2f[] primvars:st = ["));
+        EXPECT_LE(most_listed(usd, "point3f[] points = ["), vertices);
+        EXPECT_THAT(exporting.read("m.gltf"), HasSubstr(fmt::format("\"count\": {}", vertices)));
+    }
+}
+
+/// A limit below three corners for each triangle holds the file all the same.
+TEST(FlatFiles, AreNotRefusedForVerticesThatAreShared) {
+    Exporting exporting("m.inst",
+                        "material bark { texture: \"bark.png\" }\nobject m { torus material: bark }\n");
+    write_bark(exporting);
+    exporting.options.error_asked = true;
+    ASSERT_TRUE(exporting.to("m.ply")) << exporting.said();
+    exporting.options.file.most_bytes = exporting.read("m.ply").size();
+    ASSERT_TRUE(exporting.to("m.ply")) << exporting.said();
+    --exporting.options.file.most_bytes;
+    EXPECT_FALSE(exporting.to("m.ply"));
+    EXPECT_THAT(exporting.said(), HasSubstr("--limit"));
 }
 
 TEST(Formats, HoldModelsOfNothingButPlanes) {

@@ -113,6 +113,94 @@ TEST(HeldParts, AreMeshesOfTheirOwn) {
     EXPECT_EQ(leaves(*scene, places), before);
 }
 
+/// The meshes that bear the name.
+std::size_t meshes_called(const UnfoldedScene& scene, const MeshGroups& groups, const std::string& name) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(groups.meshes, [&](SceneId mesh) { return scene.nodes[mesh].name == name; }));
+}
+
+/// Sizes are told apart for the meshes of curved surfaces, which a blade does not have.
+TEST(HeldParts, AreOneMeshHoweverLargeTheyAre) {
+    const auto text = [](const std::string& look, const std::string& other_look) {
+        return "canonical object leaf {\n triangle scale: 0.1\n triangle scale: 0.1 rotate: y 90\n}\n"
+               "canonical object twig {\n leaf\n leaf scale: 0.3\n}\n"
+               "object tree {\n leaf scale: 3" +
+               look + "\n leaf translate: 1, 0, 0\n twig scale: 0.1" + other_look +
+               "\n twig scale: 0.02 translate: 2, 0, 0\n sphere scale: 0.1\n}\n";
+    };
+    const std::string red = " tint: 1, 0, 0, 0.5";
+    for (const auto& [model, meshes] :
+         {std::pair(text("", ""), 1u), {text(red, ""), 2u}, {text(red, red), 2u}}) {
+        Exporting exporting("m.inst", model);
+        const auto by_size = exporting.scene(SceneMeshes::by_size);
+        ASSERT_TRUE(by_size);
+        auto scene = resolve_looks(*by_size, {}, {}, exporting.compilation.diagnostics);
+        ASSERT_TRUE(scene);
+        EXPECT_GT(std::ranges::count(scene->nodes, "leaf", &SceneNode::name), meshes);
+        const auto before = leaves(*scene, {{scene->root, {}}});
+        const auto held = hold_parts(*scene, {"leaf"}, {}, exporting.compilation.diagnostics);
+        ASSERT_TRUE(held);
+        const MeshGroups groups =
+            group_meshes(*scene, {.most_nodes = 100, .triangles_of_node = 1e9, .held = *held});
+        EXPECT_EQ(meshes_called(*scene, groups, "leaf"), meshes) << model;
+        const std::vector<MeshPlace> places = places_of(*scene, groups);
+        EXPECT_EQ(places.size(), 7u); // six leaves, and the rest
+        const auto after = leaves(*scene, places);
+        ASSERT_EQ(after.size(), before.size());
+        for (std::size_t leaf = 0; leaf < after.size(); ++leaf)
+            for (std::size_t fact = 0; fact < 12; ++fact)
+                EXPECT_NEAR(after[leaf][fact], before[leaf][fact], 1e-12);
+    }
+}
+
+TEST(HeldParts, AreAllObjectsByAStar) {
+    const std::pair<std::vector<std::string>, std::size_t> cases[] = {
+        {{"*"}, 8},         // five leaves, the wood of two twigs, the trunk
+        {{"leaf", "*"}, 8}, // leaves are so already
+        {{"twig", "*"}, 4}, // two twigs with their leaves, a leaf, the trunk
+    };
+    for (const auto& [names, count] : cases) {
+        std::optional<UnfoldedScene> scene = resolved_scene(tree);
+        ASSERT_TRUE(scene);
+        const auto before = leaves(*scene, {{scene->root, {}}});
+        Diagnostics diagnostics;
+        const auto held = hold_parts(*scene, names, {}, diagnostics);
+        ASSERT_TRUE(held);
+        const MeshGroups groups =
+            group_meshes(*scene, {.most_nodes = 100, .triangles_of_node = 1e9, .held = *held});
+        const std::vector<MeshPlace> places = places_of(*scene, groups);
+        EXPECT_EQ(places.size(), count) << names.front();
+        for (const char* const name : {"leaf", "twig", "tree"})
+            EXPECT_EQ(meshes_called(*scene, groups, name), 1u) << name;
+        EXPECT_EQ(leaves(*scene, places), before);
+    }
+}
+
+/// Each shape is in a mesh of the object that draws it.
+TEST(HeldParts, ByAStarChangeNoLeafOfRandomGraphs) {
+    std::mt19937 random(12);
+    for (int i = 0; i < 100; ++i) {
+        std::optional<UnfoldedScene> scene =
+            resolved_scene(random_graph(random, 4 + static_cast<int>(random() % 4)));
+        ASSERT_TRUE(scene);
+        const auto before = leaves(*scene, {{scene->root, {}}});
+        Diagnostics diagnostics;
+        const auto held = hold_parts(*scene, {"*"}, {}, diagnostics);
+        ASSERT_TRUE(held);
+        const MeshGroups groups =
+            group_meshes(*scene, {.most_nodes = 1e6, .triangles_of_node = 1e9, .held = *held});
+        const std::vector<MeshPlace> places = places_of(*scene, groups);
+        for (const MeshPlace& place : places)
+            for (const ScenePart& part : scene->nodes[place.mesh].parts)
+                EXPECT_TRUE(scene->nodes[part.node].shape) << i;
+        const auto after = leaves(*scene, places);
+        ASSERT_EQ(after.size(), before.size()) << i;
+        for (std::size_t leaf = 0; leaf < after.size(); ++leaf)
+            for (std::size_t fact = 0; fact < 12; ++fact)
+                EXPECT_NEAR(after[leaf][fact], before[leaf][fact], 1e-9) << i;
+    }
+}
+
 TEST(HeldParts, ChangeNoLeafOfRandomGraphs) {
     std::mt19937 random(11);
     std::size_t held_ones = 0;

@@ -1,6 +1,8 @@
 // The small pieces of exporting.
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <glm/matrix.hpp>
@@ -122,6 +124,67 @@ TEST(Plotter, LiftsThePenForShorterWays) {
     EXPECT_NEAR(drawn, length, 1e-6);
     EXPECT_LT(lifted_length(path), 0.05 * lifted_length(strokes));
     EXPECT_TRUE(pen_path({}, 1).empty());
+}
+
+/// The order by looking at every end that is left, each time.
+std::vector<PenStroke> slow_path(std::vector<PenStroke> strokes, Point2 pen) {
+    std::vector<PenStroke> path;
+    while (!strokes.empty()) {
+        std::size_t best = 0;
+        bool last = false;
+        double least = HUGE_VAL;
+        for (std::size_t i = 0; i < strokes.size(); ++i)
+            for (const bool at_last : {false, true}) {
+                const Point2& end = at_last ? strokes[i].back() : strokes[i].front();
+                const double away = std::hypot(pen[0] - end[0], pen[1] - end[1]);
+                if (away >= least) continue;
+                least = away;
+                best = i;
+                last = at_last;
+            }
+        PenStroke stroke = strokes[best];
+        strokes.erase(strokes.begin() + static_cast<std::ptrdiff_t>(best));
+        if (last) std::ranges::reverse(stroke);
+        pen = stroke.back();
+        path.push_back(std::move(stroke));
+    }
+    return path;
+}
+
+TEST(Plotter, GoesToTheNearestEndHoweverTheyAreSpread) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> number(0, 1);
+    for (const double spread : {1.0, 30.0}) { // evenly, and most of them in a corner
+        std::vector<PenStroke> strokes;
+        for (int i = 0; i < 300; ++i) {
+            const Point2 from{std::pow(number(random), spread), std::pow(number(random), spread)};
+            strokes.push_back({from, {from[0] + number(random) / 10, from[1] + number(random) / 10}});
+        }
+        strokes[7].front() = {0, 0}; // where the pen begins
+        EXPECT_EQ(pen_path(strokes, 1e-100), slow_path(strokes, {0, 0})) << spread;
+    }
+}
+
+TEST(Plotter, DrawsRaysThatMeetInOnePoint) {
+    constexpr int rays = 20'000; // each as near as all others, in the middle
+    std::vector<PenStroke> strokes;
+    for (int i = 0; i < rays; ++i) {
+        const double angle = 2 * std::numbers::pi * i / rays;
+        strokes.push_back({{0, 0}, {std::cos(angle), std::sin(angle)}});
+    }
+    const std::vector<PenStroke> path = pen_path(strokes, 1e-9);
+    ASSERT_EQ(path.size(), rays / 2); // in on one, out on another
+    EXPECT_LT(lifted_length(path), 2 * std::numbers::pi);
+}
+
+TEST(Plotter, HoldsPagesOfAnySize) {
+    for (const double size : {1e-3, 1.0, 1e18, 1e40}) {
+        const std::vector<PenStroke> path =
+            pen_path({{{0, 0}, {size, 0}}, {{0, 0}, {2 * size, 0}}, {{0, 0}, {size, 0}}}, 1e-6);
+        ASSERT_EQ(path.size(), 2u) << size;
+        EXPECT_EQ(path[0], (PenStroke{{0, 0}, {size, 0}}));
+        EXPECT_EQ(path[1], (PenStroke{{0, 0}, {2 * size, 0}}));
+    }
 }
 
 TEST(Pbr, FollowsHighlightsAndMirrors) {

@@ -230,23 +230,25 @@ TEST(Plants, AreWrittenInDecimals) {
     EXPECT_FALSE(find_plant_format(".json")->text({*plant, tree_of(*plant)}, 100));
 }
 
-/// A random bracketed word of letters.
-std::string random_word(const CounterRandom& random, int length) {
-    std::string word = "F";
-    int open = 0;
-    for (int i = 0; i < length; ++i) {
-        const std::uint64_t draw = random(static_cast<std::uint64_t>(i)) % 10;
-        if (draw < 3) {
-            word += "[+(" + std::to_string(10 * draw + 5) + ")";
-            ++open;
-        } else if (draw < 6 && open > 0) {
-            word += "]";
-            --open;
-        } else {
-            word += draw % 2 ? "F(0.5)" : "A";
+/// Classes are letters: of many names that differ in digits alone, each pair would be a line longer than the
+/// one before.
+TEST(Plants, NamesThatDifferInDigitsAreFewEnoughForTheFile) {
+    const auto named = [](int count) {
+        std::string names, axiom;
+        for (int i = 0; i < count; ++i) {
+            names += (i == 0 ? " A" : ", A") + std::to_string(i);
+            axiom += " A" + std::to_string(i);
         }
-    }
-    return word + std::string(static_cast<std::size_t>(open), ']');
+        return plant_of("lsys a {\n modules" + names + "\n steps 0\n axiom F" + axiom + "\n}\n");
+    };
+    const auto few = named(4);
+    ASSERT_TRUE(few);
+    const std::string mtg = file_of(*few, ".mtg");
+    for (const char* const symbol : {"\nA\t2", "\nAx\t2", "\nAxx\t2", "\nAxxx\t2"})
+        EXPECT_NE(mtg.find(symbol), std::string::npos) << symbol << mtg;
+    const auto many = named(2000);
+    ASSERT_TRUE(many);
+    EXPECT_FALSE(find_plant_format(".mtg")->text({*many, tree_of(*many)}, 1u << 20));
 }
 
 /// Parents by the rules of the coding alone: a code stands in the column of its order, `^<` follows the last
@@ -269,6 +271,51 @@ std::vector<std::uint32_t> parents_in_mtg(const std::string& text) {
         parents.push_back(parent);
     }
     return parents;
+}
+
+/// Names of what has no letters would say nothing by themselves.
+TEST(Plants, OfGraphsSayWhichClassStandsForWhichModule) {
+    const PlantFormat* const format = find_plant_format(".mtg");
+    const auto plant =
+        plant_of("lsys a {\n modules 0, 1, _, P, A7, Bud\n steps 0\n axiom F 0 1 0 _ P A7 Bud {f+f-f}\n}\n");
+    ASSERT_TRUE(plant);
+    EXPECT_EQ(format->note(*plant),
+              "the classes of an .mtg have letters only: Zero is '0', One is '1', Part is "
+              "'_', PPart is 'P', A is 'A7', Polygon is '{'");
+    const std::string mtg = file_of(*plant, ".mtg");
+    for (const char* const symbol :
+         {"\nF\t2", "\nZero\t2", "\nOne\t2", "\nPart\t2", "\nPolygon\t2", "\nBud\t2"})
+        EXPECT_NE(mtg.find(symbol), std::string::npos) << symbol << mtg;
+    const auto plain = plant_of("lsys a {\n steps 0\n axiom F[+F]F\n}\n");
+    ASSERT_TRUE(plain);
+    EXPECT_EQ(format->note(*plain), "");
+}
+
+TEST(Plants, OfGraphsHaveNoRowsForWhatDrawsTheirModules) {
+    const auto plant = plant_of("lsys a {\n steps 0\n axiom A A\n interpret A -> F[+F]F\n}\n");
+    ASSERT_TRUE(plant);
+    EXPECT_EQ(plant->modules.size(), 8u);
+    EXPECT_EQ(find_plant_format(".mtg")->rows(*plant), 2u);
+    EXPECT_EQ(parents_in_mtg(file_of(*plant, ".mtg")).size(), 2u);
+}
+
+/// A random bracketed word of letters.
+std::string random_word(const CounterRandom& random, int length) {
+    std::string word = "F";
+    int open = 0;
+    for (int i = 0; i < length; ++i) {
+        const std::uint64_t draw = random(static_cast<std::uint64_t>(i)) % 10;
+        if (draw < 3) {
+            word += "[+(" + std::to_string(10 * draw + 5) + ")";
+            ++open;
+        } else if (draw < 6 && open > 0) {
+            word += "]";
+            --open;
+        } else {
+            word += draw % 2 ? "F(0.5)" : "A";
+        }
+    }
+    return word + std::string(static_cast<std::size_t>(open), ']');
 }
 
 TEST(Plants, FilesHoldTheSameTree) {

@@ -1,7 +1,6 @@
 #include "runtime/gpu/flat_boxes.h"
 
 #include <bit>
-#include <functional>
 #include <map>
 #include <random>
 
@@ -12,13 +11,16 @@
 namespace graftal {
 namespace {
 
-/// The number of times that each entry is met below a node, whose boxes must lie in `outer`; or at a single
-/// entry.
-void walk(const std::vector<glm::vec4>& boxes, std::uint32_t node, const Box& outer, int depth,
-          std::map<std::uint32_t, int>& met, int& deepest) {
-    deepest = std::max(deepest, depth);
+struct Walk {
+    std::map<std::uint32_t, int> met; ///< by entry: how often
+    int deepest = 0;
+};
+
+/// Meets the entries below a node, whose boxes must lie in `outer`, or a single one.
+void walk(const std::vector<glm::vec4>& boxes, std::uint32_t node, const Box& outer, int depth, Walk& seen) {
+    seen.deepest = std::max(seen.deepest, depth);
     if ((node & ~ENTRY_NUMBER) != 0) {
-        ++met[node];
+        ++seen.met[node];
         return;
     }
     for (std::uint32_t i = 0; i < 4; ++i) {
@@ -31,11 +33,16 @@ void walk(const std::vector<glm::vec4>& boxes, std::uint32_t node, const Box& ou
             EXPECT_LE(outer.min[axis], box.min[axis] + 1e-5);
             EXPECT_GE(outer.max[axis], box.max[axis] - 1e-5);
         }
-        if ((entry & ~ENTRY_NUMBER) == 0)
-            walk(boxes, entry, box, depth + 1, met, deepest);
-        else
-            ++met[entry];
+        walk(boxes, entry, box, depth + ((entry & ~ENTRY_NUMBER) == 0 ? 1 : 0), seen);
     }
+}
+
+Walk walked(std::vector<FlatItem> items) {
+    std::vector<glm::vec4> boxes;
+    const std::uint32_t root = build_flat_boxes(items, boxes);
+    Walk seen;
+    walk(boxes, root, {Vec3(-2.0), Vec3(2.0)}, 1, seen);
+    return seen;
 }
 
 std::vector<FlatItem> random_items(std::size_t count, double spread) {
@@ -51,28 +58,18 @@ std::vector<FlatItem> random_items(std::size_t count, double spread) {
 
 TEST(FlatBoxes, HoldEachItemOnce) {
     for (const std::size_t count : {1, 2, 4, 5, 17, 1000}) {
-        std::vector<FlatItem> items = random_items(count, 1);
-        std::vector<glm::vec4> boxes;
-        const std::uint32_t root = build_flat_boxes(items, boxes);
-        std::map<std::uint32_t, int> met;
-        int deepest = 0;
-        walk(boxes, root, {Vec3(-2.0), Vec3(2.0)}, 1, met, deepest);
-        EXPECT_EQ(met.size(), count);
-        for (const auto& [entry, times] : met)
+        const Walk seen = walked(random_items(count, 1));
+        EXPECT_EQ(seen.met.size(), count);
+        for (const auto& [entry, times] : seen.met)
             EXPECT_EQ(times, 1) << entry;
-        EXPECT_LE(deepest, 12);
+        EXPECT_LE(seen.deepest, 12);
     }
 }
 
 TEST(FlatBoxes, CoincidentItemsMakeNoDeepTree) {
-    std::vector<FlatItem> items = random_items(20'000, 0);
-    std::vector<glm::vec4> boxes;
-    const std::uint32_t root = build_flat_boxes(items, boxes);
-    std::map<std::uint32_t, int> met;
-    int deepest = 0;
-    walk(boxes, root, {Vec3(-1.0), Vec3(1.0)}, 1, met, deepest);
-    EXPECT_EQ(met.size(), 20'000u);
-    EXPECT_LE(deepest, 60);
+    const Walk seen = walked(random_items(20'000, 0));
+    EXPECT_EQ(seen.met.size(), 20'000u);
+    EXPECT_LE(seen.deepest, 60);
 }
 
 TEST(FlatBoxes, NothingHasNoTree) {

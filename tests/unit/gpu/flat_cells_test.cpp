@@ -2,7 +2,6 @@
 
 #include "runtime/gpu/flat_cells.h"
 
-#include <cmath>
 #include <optional>
 #include <random>
 #include <set>
@@ -16,7 +15,7 @@ namespace graftal {
 namespace {
 
 FlatGraph flattened(const Graph& graph) {
-    const std::shared_ptr<const PreparedCut> prepared = test::prepared(graph, {});
+    const std::shared_ptr<const PreparedGraph> prepared = test::prepared(graph, {});
     const LayeredGraph layers = layered(prepared->cut, prepared->root_steps);
     std::optional<FlatGraph> flat = flat_graph(layers, drawn_bounds(layers.cut), 0.5, 100'000);
     EXPECT_TRUE(flat);

@@ -218,6 +218,25 @@ TEST(GpuKernel, SaysWhatItCannotDraw) {
     EXPECT_EQ(why, "a singular map");
 }
 
+TEST(GpuKernel, LeavesTranslucentSheetsToTheNativeEngine) {
+    const auto draws = [](Vec3 size, double translucency) {
+        Graph graph = test::empty_graph();
+        graph.materials = {Material{.name = "leaf", .translucency = translucency}};
+        test::place(graph, graph.root, graph.primitive(PrimitiveKind::cylinder), Affine::scale(size));
+        graph.objects[graph.root].instances.front().material = 0;
+        const auto model = test::traced(graph, {});
+        std::string why;
+        const bool flat =
+            flat_model({model->prepared, model->view, model->options, model->textures, {}, {}}, why)
+                .has_value();
+        EXPECT_EQ(why, flat ? "" : "translucent solids as thin as a sheet");
+        return flat;
+    };
+    EXPECT_FALSE(draws({1, 0.002, 1}, 0.5));
+    EXPECT_TRUE(draws({1, 0.002, 1}, 0));
+    EXPECT_TRUE(draws({1, 0.1, 1}, 0.5));
+}
+
 TEST(GpuKernel, HasTheRandomNumbersOfTheNativeEngine) {
     for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{0x123456789abcdef}})
         for (const std::uint32_t index : {0u, 1u, 77u}) {

@@ -1,6 +1,8 @@
 #include "compiler/graph/run.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -9,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/graph/graph.h"
+#include "compiler/support/counter_random.h"
 
 namespace graftal {
 namespace {
@@ -158,6 +161,45 @@ TEST(Run, KnowsWhatIsSound) {
     item = good;
     item.shape = PrimitiveKind::cube;
     EXPECT_FALSE(is_sound(item));
+}
+
+/// The mean length of the step from an item to the next.
+double mean_step(const graftal::Run& run) {
+    double sum = 0;
+    for (std::size_t i = 1; i < run.size(); ++i)
+        sum += glm::distance(run[i - 1].base, run[i].base);
+    return sum / static_cast<double>(run.size() - 1);
+}
+
+TEST(Run, IsOrderedInSpaceWhereItsItemsLieAnyhow) {
+    const CounterRandom random(5);
+    graftal::Run run;
+    std::vector<double> before, after;
+    constexpr std::size_t count = 40'000; // of several chunks
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const auto number = [&](std::uint64_t k) { return CounterRandom::unit(random(3 * i + k)); };
+        run.add(segment({number(0), number(1), number(2)}, {0, 0.001, 0}, 0.01));
+        before.push_back(run[i].base.x);
+    }
+    EXPECT_GT(mean_step(run), 0.5);
+    order_in_space(run);
+    EXPECT_LT(mean_step(run), 0.1);
+    ASSERT_EQ(run.size(), count);
+    for (std::size_t i = 0; i < count; ++i)
+        after.push_back(run[i].base.x);
+    std::ranges::sort(before);
+    std::ranges::sort(after);
+    EXPECT_EQ(before, after);
+}
+
+TEST(Run, KeepsItsOrderWhereItGoesThroughSpace) {
+    graftal::Run run;
+    constexpr int count = 20'000;
+    for (int i = 0; i < count; ++i) // a coil
+        run.add(segment({std::cos(0.01 * i), 0.001 * i, std::sin(0.01 * i)}, {0, 0.001, 0}, 0.01));
+    order_in_space(run);
+    for (int i = 0; i < count; ++i)
+        ASSERT_EQ(run[static_cast<std::size_t>(i)].base.y, 0.001 * i);
 }
 
 } // namespace

@@ -132,6 +132,14 @@ TEST(Importers, NoNameBeginsALineOfItsOwn) {
     }
 }
 
+TEST(Importers, FlamesOfOneNameGetNamesThatNoOtherHas) {
+    const std::string map = "<xform weight=\"1\" linear=\"1\" coefs=\".5 0 0 .5 0 0\"/></flame>";
+    const std::string text = "<flames><flame name=\"a\">" + map + "<flame name=\"a_3\">" + map +
+                             "<flame name=\"a\">" + map + "</flames>";
+    const Imported third("b.flame:a_4", text);
+    EXPECT_TRUE(third.graph) << third.said();
+}
+
 TEST(Importers, NumbersReadBackToTheLastBit) {
     const Imported script("a.es", "set background #804020\n{ color #808080 x 0.1 } box\n");
     EXPECT_THAT(script.translation, HasSubstr(shortest(128.0 / 255)));

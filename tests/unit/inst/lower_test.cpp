@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/graph/text/print.h"
+#include "compiler/inst/parse/parser.h"
 #include "tests/unit/inst/inst_model.h"
 
 namespace graftal {
@@ -360,6 +361,62 @@ TEST(InstHostile, many_errors_end) {
     EXPECT_THAT(what_is_said_of(text), HasSubstr("unknown object 'unknown99'"));
     for (const char wrong : {'}', '\xFF'})
         EXPECT_THAT(what_is_said_of(std::string(1'000'000, wrong)), HasSubstr("error: "));
+}
+
+TEST(InstHostile, lets_are_not_copied_for_each_object) {
+    std::string lets;
+    for (int i = 0; i < 20'000; ++i)
+        lets += "let a" + std::to_string(i) + " = 1\n";
+    EXPECT_TRUE(InstModel(lets +
+                          "canonical object f(0) { sphere }\ncanonical object f(n) { f(n - 1) scale: a7 }\n"
+                          "object o { f(50000) }")
+                    .graph);
+}
+
+TEST(InstHostile, a_known_object_is_not_looked_for_among_patterns) {
+    std::string text;
+    for (int i = 0; i < 20'000; ++i)
+        text += "canonical object f(" + std::to_string(i) + ", n) { sphere }\n";
+    text += "canonical object f(m, n) { cube }\nobject o {\n";
+    for (int i = 0; i < 50'000; ++i)
+        text += "f(-1, 1)\n";
+    const InstModel model(text + "}");
+    ASSERT_TRUE(model.graph) << model.said();
+    EXPECT_EQ(model.object("o").instances.size(), 50'000u);
+    EXPECT_EQ(model.masters("f(-1, 1)"), std::vector<std::string>{"cube"});
+}
+
+TEST(InstHostile, groups_share_the_conditions_and_repeats_around_them) {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    const InstModule module = parse_inst(
+        sources,
+        sources.add("m.inst",
+                    "object o {\n2 * { rotate: y, 9 } {\nwhen 1 {\nsphere\ncube\n}\ncube\n}\nsphere\n}"),
+        diagnostics);
+    ASSERT_FALSE(diagnostics.has_errors()) << diagnostics.render(sources);
+    const std::vector<InstGroup>& groups = module.definitions[0].groups;
+    ASSERT_EQ(groups.size(), 4u);
+    EXPECT_EQ(groups[0].conditions.size(), 1u);
+    EXPECT_EQ(groups[0].conditions.begin(), groups[1].conditions.begin());
+    EXPECT_TRUE(groups[2].conditions.empty());
+    EXPECT_EQ(groups[0].repeats.begin(), groups[2].repeats.begin());
+    EXPECT_EQ(groups[0].repeats.size(), 1u);
+    EXPECT_TRUE(groups[3].repeats.empty());
+}
+
+TEST(Inst, parameters_leave_lets_to_other_objects) {
+    const InstModel model("let n = 7\ncanonical object f(n) { sphere scale: n }\ncanonical object g(m) { "
+                          "sphere scale: n * m }\n"
+                          "object o { f(2), g(3), f(4) }");
+    ASSERT_TRUE(model.graph) << model.said();
+    EXPECT_EQ(model.map("f(2)").linear[0][0], 2);
+    EXPECT_EQ(model.map("g(3)").linear[0][0], 21);
+    EXPECT_EQ(model.map("f(4)").linear[0][0], 4);
+    EXPECT_FALSE(
+        InstModel("canonical object f(n) { sphere scale: n }\ncanonical object g(m) { sphere scale: n }\n"
+                  "object o { f(2), g(3) }")
+            .graph);
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 #include "compiler/graph/text/print.h"
 #include "compiler/inst/scatter_points.h"
 #include "compiler/languages/lower.h"
+#include "compiler/support/stage_work.h"
 
 namespace graftal {
 namespace {
@@ -275,6 +276,39 @@ TEST(Scatter, is_the_same_everywhere) {
 TEST(Scatter, a_hundred_thousand_take_no_time_to_speak_of) {
     const std::vector<Instance> found = scattered("scatter: cube  count: 100000  over: disc 1000");
     EXPECT_EQ(found.size(), 100'000u);
+}
+
+/// Whether the lines of a scatter of spheres take more work than these seconds.
+bool takes_more(double seconds, const std::string& lines) {
+    StageWork work(seconds);
+    LowerHelp help;
+    help.control.work = &work;
+    SourceMap sources;
+    Diagnostics diagnostics;
+    try {
+        lower_text("m.inst", "object o {\nscatter: sphere\n" + lines + "\n}\n", {}, sources, diagnostics,
+                   help);
+    } catch (const OutOfWork&) {
+        return true;
+    }
+    EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.render(sources);
+    return false;
+}
+
+TEST(Scatter, counts_places_that_lie_outside_and_exceptions) {
+    // Hardly a place of a spiral lies in a long strip: this took hours.
+    EXPECT_TRUE(takes_more(0.1, "over: 0, 0, 1e9, 1  count: 1000  by: spiral"));
+    EXPECT_FALSE(takes_more(0.1, "over: 0, 0, 10, 1  count: 1000  by: spiral"));
+    std::string exceptions;
+    for (int i = 0; i < 20'000; ++i)
+        exceptions += "except: 11, 11, 12, 12\n";
+    EXPECT_TRUE(takes_more(1, "over: 0, 0, 10, 10  count: 1000\n" + exceptions));
+    EXPECT_FALSE(takes_more(0.1, "over: 0, 0, 10, 10  count: 1000\nexcept: 1, 1, 2, 2"));
+}
+
+TEST(Scatter, ranges_have_a_width) {
+    EXPECT_THAT(errors_of("object o { scatter: sphere  over: disc 1  count: 3\nturn: -1e308..1e308 }"),
+                HasSubstr("the ends of this 'turn' lie too far apart"));
 }
 
 } // namespace

@@ -431,5 +431,23 @@ TEST(Hue, what_cannot_be_exact_is_said) {
     EXPECT_THAT(alone.said(), HasSubstr("'hue' has no object to apply to"));
 }
 
+TEST(RandomNumbers, leave_counts_and_hues_beside_them_exact) {
+    // Where a group drew a random number anywhere, 22.5 degrees became 23, and 2.5 copies 2.
+    const InstModel turned(
+        "object o { 16 * { rotate: y, 22.5  hue: 22.5 } sphere scale: random(1, 2) tint: 1, 0, 0, 1 }");
+    ASSERT_TRUE(turned.graph) << turned.said();
+    EXPECT_EQ(turned.said(), "");
+    const std::vector<Instance>& copies = turned.root().instances;
+    ASSERT_EQ(copies.size(), 16u);
+    const Rgb opposite = copies[8].tint.rgb; // cyan
+    EXPECT_NEAR(opposite.r, 0, 1e-12);
+    EXPECT_NEAR(opposite.g, opposite.b, 1e-12);
+    EXPECT_THAT(InstModel("object o { 2.5 * { rotate: y, 9 } sphere scale: random(1, 2) }").said(),
+                HasSubstr("a repeat makes a whole number of copies, from 1 to"));
+    const InstModel random("object o { (random(2, 2.9)) * { rotate: y, 9 } sphere }");
+    ASSERT_TRUE(random.graph) << random.said();
+    EXPECT_EQ(random.root().instances.size(), 2u);
+}
+
 } // namespace
 } // namespace graftal

@@ -67,6 +67,22 @@ TEST(Presets, SayWhatIsWrong) {
     }
 }
 
+TEST(Presets, AreCheckedWhetherTheyAreTakenOrNot) {
+    for (const auto& [name, text] : models) {
+        const std::string unknown = std::string("preset p { sise = 2 }\n") + presets + text;
+        for (const char* const taken : {"", "small", "p"}) {
+            const std::string messages = lower(name, unknown, taken).messages;
+            EXPECT_NE(messages.find(name + ":1:12: error: preset 'p': the model has no 'let sise' to set"),
+                      std::string::npos)
+                << name << ", " << taken << ": " << messages;
+            EXPECT_EQ(messages.find("no 'let sise'"), messages.rfind("no 'let sise'"))
+                << name << ", " << taken;
+        }
+        const std::string lost = std::string("preset p { size = lean }\n") + presets + text;
+        EXPECT_NE(lower(name, lost, "").messages, "") << name;
+    }
+}
+
 /// The word is young: parts of older models may have it for a name.
 TEST(Presets, IsANameElsewhere) {
     EXPECT_EQ(

@@ -44,6 +44,22 @@ TEST(LibraryModel, AParameterChangesThePictureAndBackAgain) {
     EXPECT_EQ(again->rgb, thin->rgb);
 }
 
+TEST(LibraryModel, SmoothsByDepthsFromOneToNine) {
+    const auto drawn = [](int depth) {
+        Model model = Model::from_text("disc.inst", "light { sun: 1,2,3 }\nobject disc { sphere }\n");
+        model.size(1, 1);
+        model.threads(1);
+        model.antialias(depth);
+        const auto picture = model.render();
+        EXPECT_TRUE(picture) << picture.text();
+        return picture ? picture->rgb : std::vector<std::uint8_t>();
+    };
+    for (const int depth : {0, -1, -2'000'000'000})
+        EXPECT_EQ(drawn(depth), drawn(1)) << depth;
+    for (const int depth : {10, 33, 2'000'000'000})
+        EXPECT_EQ(drawn(depth), drawn(9)) << depth;
+}
+
 /// Nothing of the library is shared between models: the thread sanitizer sees to it.
 TEST(LibraryModel, TwoModelsWorkInTwoThreads) {
     const char* const tree = "lsys tree {\n  angle 25\n  steps 5\n  axiom A(1)\n"

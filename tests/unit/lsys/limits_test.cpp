@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/languages/lower.h"
+#include "compiler/support/stage_work.h"
 
 namespace graftal {
 namespace {
@@ -141,6 +142,85 @@ TEST(LsysLimits, blocksThatPlaceBlocks) {
     };
     EXPECT_EQ(said(chain(255)), "");
     EXPECT_THAT(said(chain(20'000)), HasSubstr("blocks place each other more than 256 deep"));
+}
+
+TEST(LsysLimits, runsOfSpacesAreReadOnce) {
+    // Each space looked for what follows all of them.
+    EXPECT_EQ(said(block("steps 0\naxiom F" + std::string(1'000'000, ' ') + "F")), "");
+}
+
+TEST(LsysLimits, localValues) {
+    const auto with = [](int count) {
+        return block("steps 1\naxiom A\nA : {" + numbered(count, " = 1; ", "v") + " = 1} * -> F");
+    };
+    EXPECT_EQ(said(with(256)).find("error"), std::string::npos);
+    EXPECT_THAT(said(with(20'000)), HasSubstr("a production has at most 256 local values"));
+}
+
+TEST(LsysLimits, idleLocalValuesBesideManyVariables) {
+    // Each looked for a name like its own among all variables, whether its warning was shown or not.
+    std::string text = "steps 1\naxiom A\nvariable " + numbered(5000, " = 1, ", "c") + " = 1";
+    for (int i = 0; i < 5000; ++i)
+        text += fmt::format("\nA : {{q{0} = 1}} step > {0} -> F", i);
+    const std::string messages = said(block(text));
+    EXPECT_THAT(messages, HasSubstr("nothing reads the local value 'q0'"));
+    EXPECT_EQ(messages.find("error"), std::string::npos);
+}
+
+TEST(LsysLimits, longChainsOfInterpretations) {
+    // Ages were handed on by one production at a time, in as many rounds over all.
+    constexpr int count = 30'000;
+    std::string text = "modules " + numbered(count, " ", "m") + "\nsteps 0\naxiom F\ninterpret {";
+    for (int i = 1; i < count; ++i)
+        text += fmt::format("\nm{} -> m{}", i - 1, i);
+    EXPECT_EQ(said(block(text + fmt::format("\nm{} : age > 1 -> F\n}}", count - 1))).find("error"),
+              std::string::npos);
+}
+
+TEST(LsysLimits, anglesBeyondTheRange) {
+    // Directions that are no numbers were never found among the known ones.
+    EXPECT_THAT(said(block("steps 50\naxiom +(90)@B(1e308)A\nA -> [$A]$")),
+                HasSubstr("an elasticity is at most 1e+100, not 1e+308"));
+    EXPECT_THAT(said(block("angle 1e300\nsteps 0\naxiom @A(1e50)+F")),
+                HasSubstr("the factor of the angle leaves the range of numbers"));
+}
+
+TEST(LsysLimits, polygonsOfManyCornersAreWork) {
+    const auto work_of = [](int corners) {
+        std::string text = "lsys test {\nsteps 0\naxiom {";
+        for (int i = 0; i < corners; ++i)
+            text += "f+(0.04)";
+        StageWork work;
+        LowerHelp help;
+        help.control.work = &work;
+        SourceMap sources;
+        Diagnostics diagnostics;
+        EXPECT_TRUE(lower_text("m.lsys", text + "}\n}\n", {}, sources, diagnostics, help).graph);
+        return work.seconds();
+    };
+    EXPECT_GT(work_of(8000), 3 * work_of(4000)) << "its square";
+}
+
+TEST(LsysUses, PrimitivesDoNotNameUsedModels) {
+    // `~sphere` placed the primitive, whatever the file was.
+    EXPECT_EQ(said("use sphere = \"ball.rifs\"\nlsys a {\n  steps 0\n  axiom F ~sphere\n}\n"),
+              "m.lsys:1:5: error: 'sphere' is a primitive and cannot name a used model\n"
+              "    use sphere = \"ball.rifs\"\n"
+              "        ^~~~~~\n");
+}
+
+TEST(LsysLimits, polygonsAtTheEndsOfTheRange) {
+    // The squares of their areas are no doubles: they were left out.
+    for (const char* step : {"1e90", "1e-90"}) {
+        SourceMap sources;
+        Diagnostics diagnostics;
+        const auto graph =
+            lower_text("m.lsys", block(fmt::format("step {}\nangle 90\nsteps 0\naxiom {{F+F+F+F}}", step)),
+                       {}, sources, diagnostics)
+                .graph;
+        ASSERT_TRUE(graph) << diagnostics.render(sources);
+        EXPECT_EQ(graph->objects[graph->root].instances.size(), 2u) << step;
+    }
 }
 
 } // namespace

@@ -1,11 +1,13 @@
 // Productions that read the time, against a derivation in the plainest code there is.
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "compiler/lower/plant.h"
 #include "tests/unit/lsys/turtle.h"
 
 namespace graftal {
@@ -351,6 +353,53 @@ TEST(LsysTime, faults) {
     EXPECT_EQ(errors_of("object a { sphere }", {.steps = 2, .time = 2.5}, "a.inst"), "");
     EXPECT_THAT(errors_of("lsys m {\nsteps 3\naxiom A\nA -> FA\ninterpret A -> F(1/(age - 0))\n}", {}),
                 HasSubstr("m.lsys:5:18: error: division by zero"));
+}
+
+// A module that chance leaves as it is grows older. Derived, with contexts and in order too, and composed.
+TEST(LsysTime, ModulesThatStayByChanceKeepTheirAge) {
+    const std::string alike(60, 'A');
+    std::string different; // enough to be derived module by module
+    for (int i = 0; i < 60; ++i)
+        different += "A(" + std::to_string(i) + ")";
+    const std::pair<std::string, std::string> models[] = {
+        {alike, "A -> B : 0.3\ninterpret A -> F"},
+        {alike, "A -> B : 0.3\nZ < Y -> Y\ninterpret A -> F"},
+        {alike, "variable n = 0\nA : {n = n + 1} * -> B : 0.3\ninterpret A -> F"},
+        {alike, "A -> B : 0.3\ndecompose C -> D\ninterpret A -> F"},
+        {different, "A(n) -> B : 0.3\ninterpret A(n) -> F"}};
+    for (const auto& [axiom, rules] : models)
+        for (const bool exact : {false, true}) {
+            LowerOptions options;
+            options.in_place = LowerOptions::InPlace::plant;
+            options.exact = exact;
+            options.run_from = 1;
+            SourceMap sources;
+            Diagnostics diagnostics;
+            const std::string text = "lsys a {\nsteps 4\naxiom " + axiom + "\n" + rules + "\n}\n";
+            const auto plant = lower_text("m.lsys", text, options, sources, diagnostics).notes.plant;
+            ASSERT_TRUE(plant) << diagnostics.render(sources);
+            std::size_t stayed = 0;
+            double oldest = 0;
+            for (const PlantModule& module : plant->modules) {
+                const std::string& name = plant->names[module.name];
+                if (name == "A") EXPECT_EQ(module.age, 4) << rules;
+                if (name == "B") oldest = std::max(oldest, module.age);
+                stayed += name == "A";
+            }
+            EXPECT_GT(stayed, 4u) << rules;
+            EXPECT_LT(stayed, 40u) << rules;
+            EXPECT_EQ(oldest, 3) << rules;
+        }
+}
+
+TEST(LsysTime, AgesAreHandedOnToWhatIsDrawnAsAged) {
+    LsysModel model("axiom A\ninterpret {\nA -> B\nB -> [C]\nC : age > 1 -> D\nE -> A\nG -> F\n}");
+    const LsysGrammar& grammar = model.rewriter().grammar();
+    std::string aged;
+    for (std::size_t symbol = 0; symbol < grammar.symbols.size(); ++symbol)
+        if (grammar.ages[symbol]) aged += grammar.symbols[symbol];
+    std::ranges::sort(aged);
+    EXPECT_EQ(aged, "ABCE");
 }
 
 } // namespace

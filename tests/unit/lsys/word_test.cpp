@@ -132,5 +132,33 @@ TEST(LsysWord, KeepsModulesByTheRestOfProbabilities) {
     }
 }
 
+TEST(LsysWord, LettersDoNotReadAsADeclaredName) {
+    const Word word = word_of("lsys a {\n  modules AB ABC\n  steps 0\n  axiom A B AB A A B C [A]B F\n}\n");
+    EXPECT_EQ(word.text, "A B AB AA BC[A]BF");
+    EXPECT_EQ(word_of("lsys a {\n  modules AB ABC\n  steps 0\n  axiom " + word.text + "\n}\n").text,
+              word.text);
+}
+
+TEST(LsysWord, TablesServeInEveryStatement) {
+    EXPECT_EQ(
+        word_of("lsys a {\n  table t = 0, 1, 4\n  seed t(1)\n  steps t(0.5)\n  tropism t(0.5), 0, 0, t(0)\n"
+                "  variable x = t(1)\n  array b[t(0.5)] = t(0.75)\n  axiom A(0)\n"
+                "  A(n) -> F(x)F(b[0])\n}\n")
+            .text,
+        "F(4)F(2.5)");
+}
+
+TEST(LsysWord, OneThatIsTooLongSaysAfterWhichStep) {
+    LowerOptions options;
+    options.in_place = LowerOptions::InPlace::word;
+    options.max_modules = 100;
+    SourceMap sources;
+    Diagnostics diagnostics;
+    lower_text("m.lsys", "lsys a {\n  axiom A\n  steps 9\n  A -> AA : 0.5\n  A -> AAA : 0.5\n}\n", options,
+               sources, diagnostics);
+    EXPECT_NE(diagnostics.render(sources).find("more than 100 modules after step 9"), std::string::npos)
+        << diagnostics.render(sources);
+}
+
 } // namespace
 } // namespace graftal

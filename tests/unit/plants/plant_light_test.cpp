@@ -154,6 +154,54 @@ TEST(PlantLight, GoesSomewhere) {
     EXPECT_GT(found.absorbed.amount, 0.7 * found.falls.amount) << "some is taken after it was scattered";
 }
 
+// A disc is a thin solid, and one leaf: light that meets it goes on from it once, as from a square.
+TEST(PlantLight, OfDiscsIsThatOfLeaves) {
+    const std::string clear = "material leaf { color: 1,1,1  diffuse: 0  translucency: 0.5  specular: 0 }\n";
+    const LitPlant discs = lit(plant_text(clear, "axiom [&(90)@o(2)][f(1)&(90)@o(2)]"), 16384);
+    ASSERT_TRUE(discs.light) << discs.messages;
+    const PlantLight& found = *discs.light;
+    // Discs of radius 1 and as far apart (Howell, C-41). Half of what comes to the upper one goes through it,
+    // and of that this share comes to the lower one, in the place of light of the sky.
+    const double factor = (3 - std::sqrt(5.0)) / 2;
+    EXPECT_NEAR(found.falls.amount, pi * (2 - factor), 0.02);
+    EXPECT_NEAR(found.absorbed.amount, pi / 2 * (2 - factor / 2), 0.01);
+    EXPECT_NEAR(found.taken, pi / 2 * (2 - factor / 2), 0.02);
+}
+
+// Discs of diameter 2 that are nearer than they are thick.
+TEST(PlantLight, OfOneDiscUponAnother) {
+    for (const double distance : {0.01, 0.001, 1e-4}) {
+        const LitPlant discs =
+            lit(plant_text(black, fmt::format("axiom [&(90)@o(2)][f({})&(90)@o(2)]", distance)), 64);
+        ASSERT_TRUE(discs.light) << discs.messages;
+        EXPECT_NEAR(discs.at(0), 0, 0.02) << distance;
+        EXPECT_NEAR(discs.at(1), 1, 0.02) << distance;
+    }
+}
+
+// Discs that a word draws here and there, all over a cube.
+TEST(PlantLight, TakesWorkByTheNumberOfOrgans) {
+    const auto work_of_ray = [&](int steps) {
+        const std::string place = "@M(random(0,1),random(0,1),random(0,1))/(random(0,360))&(random(0,180))";
+        const std::string disc = fmt::format("[{}@o({})]", place, 0.5 * std::pow(2, -steps / 3.0));
+        const LitPlant discs = lit(
+            fmt::format("lsys a {{\n steps {}\n axiom A\n A -> AA\n interpret A -> {}\n}}\n", steps, disc), 4,
+            1, 1000, true);
+        EXPECT_TRUE(discs.light) << discs.messages;
+        return discs.light->work_seconds / static_cast<double>(discs.light->rays);
+    };
+    EXPECT_LT(work_of_ray(14), 1.5 * work_of_ray(12)) << "four times as many discs";
+}
+
+TEST(PlantLight, KnowsNoShareInTheSunWithoutASun) {
+    const LitPlant shaded = lit(plant_text(green, level_square), 16);
+    ASSERT_TRUE(shaded.light) << shaded.messages;
+    EXPECT_TRUE(std::isnan(shaded.light->organs[0].sunlit));
+    const LitPlant sunny = lit(plant_text(green + "light { sun: 0,1,0 }\n", level_square), 16);
+    ASSERT_TRUE(sunny.light) << sunny.messages;
+    EXPECT_EQ(sunny.light->organs[0].sunlit, 1);
+}
+
 TEST(PlantLight, IsTheSameForAnyThreads) {
     const std::string text = plant_text(green, layer(300, 0.3, false));
     const LitPlant one = lit(text, 16, 1), three = lit(text, 16, 3);

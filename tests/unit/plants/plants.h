@@ -39,13 +39,16 @@ inline std::shared_ptr<const Plant> plant_of(const std::string& text) {
     return plant;
 }
 
-/// Lights the plant with `most_samples` samples of each organ, unless `work_seconds` are too few.
-inline LitPlant lit(const std::string& text, int most_samples, int threads = 1, double work_seconds = 1000) {
+/// Lights the plant with `most_samples` samples of each organ, unless `work_seconds` are too few. `exact`: as
+/// --exact derives it.
+inline LitPlant lit(const std::string& text, int most_samples, int threads = 1, double work_seconds = 1000,
+                    bool exact = false) {
     PictureSession session("m.lsys");
     session.edit(text);
     Compilation compilation;
     RenderOptions options;
     options.threads = threads;
+    options.compile.lower.exact = exact;
     LitPlant found;
     found.plant = plant_of_model(session, options.compile, "no plant", compilation);
     if (found.plant)

@@ -85,6 +85,14 @@ TEST(Intersect, MeetsEachSurface) {
         expect(c, i++);
 }
 
+TEST(Intersect, CountsTheWorkOfATorusWhetherItIsMetOrNot) {
+    PrimitiveHit met, missed;
+    EXPECT_TRUE(intersect(torus, {{3, 0, 0}, {-1, 0, 0}}, {}, met));
+    EXPECT_FALSE(intersect(torus, {{0, 3, 0}, {0, -1, 0}}, {}, missed)); // through the hole
+    EXPECT_GT(missed.steps, 0u);
+    EXPECT_EQ(met.steps, missed.steps);
+}
+
 TEST(Intersect, FindsTheExitFromInside) {
     const Case cases[] = {
         {sphere, {0, 0, 0}, {0, 0.5, 0}, 2, {0, 1, 0}},

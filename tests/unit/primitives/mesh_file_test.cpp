@@ -139,6 +139,14 @@ TEST(MeshFile, RefusesDamagedPly) {
     EXPECT_THAT(fault_of_mesh("ply\n"), HasSubstr("does not end"));
 }
 
+TEST(MeshFile, CountsThePlyElementsOfOneNameTogether) {
+    std::string text = "ply\nformat binary_little_endian 1.0\n";
+    for (int i = 0; i < 11; ++i)
+        text += "element vertex 100000\nproperty uchar x\n";
+    text += "end_header\n" + std::string(1'100'000, ' ');
+    EXPECT_THAT(fault_of_mesh(text), HasSubstr("there are 1100000 vertices, and 1000000 are the most"));
+}
+
 /// Bytes of a binary STL file. `head`: its first bytes.
 std::string binary_stl(const std::vector<std::array<float, 9>>& facets, std::string head = "") {
     head.resize(80, ' ');

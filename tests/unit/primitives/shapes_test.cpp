@@ -34,6 +34,20 @@ TEST(Superellipsoid, IsASphereOctahedronOrCylinderAtItsEnds) {
                 4 * 3.14159265, 0.02);
 }
 
+/// The greatest length has a closed form whose powers leave the range of doubles near n = 1.
+TEST(Superellipsoid, HasASmallBallAtAnyExponents) {
+    for (const double e : {0.1, 0.5, 1.0, 2.0})
+        for (double n = 0.9; n < 1.1; n += 1.0 / 4096) {
+            const Primitive shape = made_of(PrimitiveKind::superellipsoid, {e, n});
+            double farthest = 0;
+            for (const Vec3& vertex : traits_of(shape).mesh(shape, 1).vertices)
+                farthest = std::max(farthest, glm::length(vertex));
+            const double radius = traits_of(shape).ball(shape).radius;
+            EXPECT_GE(radius, farthest) << e << " " << n;
+            EXPECT_LE(radius, 1.01 * farthest) << e << " " << n;
+        }
+}
+
 TEST(Superellipsoid, RefusesOtherExponents) {
     EXPECT_THAT(fault_of(PrimitiveKind::superellipsoid, {0.05, 1}), HasSubstr("between 0.1 and 2"));
     EXPECT_THAT(fault_of(PrimitiveKind::superellipsoid, {1, 2.5}), HasSubstr("not at 2.5"));

@@ -448,5 +448,72 @@ TEST(LowerRifs, manyUnknownNamesTakeNoTime) {
     EXPECT_FALSE(lower(text + "} }").graph);
 }
 
+TEST(LowerRifs, manyUnknownBlocksTakeNoTime) {
+    std::string text;
+    for (int i = 0; i < 1000; ++i)
+        text += "rifs name_that_is_fairly_long_" + std::to_string(i) + " { map a { scale 1/2 } }\n";
+    text += "rifs r {\n";
+    for (int i = 0; i < 20'000; ++i)
+        text += "map m" + std::to_string(i) + " from name_that_is_unknown { scale 1/2 }\n";
+    EXPECT_NE(lower(text + "}").messages.find("unknown rifs 'name_that_is_unknown'"), std::string::npos);
+}
+
+TEST(LowerRifs, manyPrimitivesOfNumbersAreFoundAtOnce) {
+    std::string text = "rifs r { map a { scale 1/2 } map b { scale 1/2 translate 1, 0, 0 }\n";
+    constexpr int count = 40'000;
+    for (int i = 0; i < count; ++i) // each twice
+        text += "condense superellipsoid(" + std::to_string(0.1 + 1e-5 * (i / 2)) + ", 1)\n";
+    const Graph graph = graph_of(text + "}");
+    EXPECT_EQ(graph.objects.size(), count / 2 + 3u);
+}
+
+std::string said_of_orbit(const std::string& lines) {
+    LowerOptions options;
+    options.may_be_orbit = true;
+    return lower("orbit o {\n" + lines + "}\n", options).messages;
+}
+
+/// Each function calls the one before on its argument, negated so many times.
+std::string nested_functions(int count, int signs) {
+    std::string text = "f0(t) = t\n";
+    for (int i = 1; i < count; ++i) {
+        text += "f" + std::to_string(i) + "(t) = f" + std::to_string(i - 1) + "(";
+        for (int k = 0; k < signs; ++k)
+            text += "-(";
+        text += "t" + std::string(static_cast<std::size_t>(signs), ')') + ")\n";
+    }
+    return text + "x = f" + std::to_string(count - 1) + "(x)  y = y\n";
+}
+
+// Recursion follows the formulas: they went beyond the stack.
+TEST(LowerRifs, functionsOfAnOrbitNestToALimit) {
+    EXPECT_EQ(said_of_orbit(nested_functions(20, 90)), "");
+    EXPECT_NE(said_of_orbit(nested_functions(900, 90)).find("this formula nests more than 2000 deep"),
+              std::string::npos);
+}
+
+TEST(LowerRifs, allFormulasOfAnOrbitAreBounded) {
+    std::string functions = "f0(t) = t + t\n", lets;
+    for (int i = 1; i < 12; ++i)
+        functions += "f" + std::to_string(i) + "(t) = f" + std::to_string(i - 1) + "(t) + f" +
+                     std::to_string(i - 1) + "(t)\n";
+    for (int i = 0; i < 900; ++i)
+        lets += "let a" + std::to_string(i) + " = f11(x)\n";
+    const std::string message = "the formulas of 'orbit o' have more than 2000000 words";
+    EXPECT_NE(said_of_orbit(functions + "map m {\n" + lets + "x = x  y = y }\n").find(message),
+              std::string::npos);
+    EXPECT_EQ(said_of_orbit(functions + "x = f11(x)*1e-9  y = f11(y)*1e-9\n"), "");
+}
+
+// A point begins anew in a condensation set with its probability, whether that of the maps is stated or not.
+TEST(LowerRifs, mapsLeaveCondensationSetsTheirProbability) {
+    const std::string set = "condense sphere scale 0.01 probability 0.25 }",
+                      half = "map a { scale 1/2 probability 0.5 }";
+    EXPECT_TRUE(equal(graph_of("rifs r { map a { scale 1/2 }\n" + set),
+                      graph_of("rifs r { map a { scale 1/2 probability 0.75 }\n" + set)));
+    EXPECT_TRUE(equal(graph_of("rifs r { " + half + " map b { scale 1/3 }\n" + set),
+                      graph_of("rifs r { " + half + " map b { scale 1/3 probability 0.25 }\n" + set)));
+}
+
 } // namespace
 } // namespace graftal

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/detail/bake.h"
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/shell/store.h"
 #include "compiler/detail/weights.h"
 #include "compiler/povray/costs.h"
@@ -43,7 +43,7 @@ Graph balls(int levels = 6) {
 
 struct Model {
     Graph graph = balls();
-    CutGraph cut = test::cut_of(graph);
+    DetailGraph cut = test::cut_of(graph);
     Symmetry symmetry = find_symmetry(cut);
 };
 

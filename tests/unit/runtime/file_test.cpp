@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 /// A folder of its own, removed afterwards.
-class Files : public testing::Test {
+class FilesOnDisk : public testing::Test {
   protected:
     void SetUp() override {
         const auto* test = testing::UnitTest::GetInstance()->current_test_info();
@@ -42,7 +42,7 @@ class Files : public testing::Test {
     fs::path folder_;
 };
 
-TEST_F(Files, WriteThenReadGivesTheSameBytes) {
+TEST_F(FilesOnDisk, WriteThenReadGivesTheSameBytes) {
     const std::string text("a\r\n\0\xFF end", 9);
     ASSERT_TRUE(write_text(path("x.inst"), text).ok());
     std::string back = "old";
@@ -51,7 +51,7 @@ TEST_F(Files, WriteThenReadGivesTheSameBytes) {
     EXPECT_EQ(file_count(), 1u) << "no temporary is left";
 }
 
-TEST_F(Files, ReadingSaysWhatWasTriedAndWhatTheSystemAnswered) {
+TEST_F(FilesOnDisk, ReadingSaysWhatWasTriedAndWhatTheSystemAnswered) {
     std::string text;
     EXPECT_EQ(read_text(path("none.inst"), text).message(),
               "cannot open '" + path("none.inst") + "': No such file or directory");
@@ -59,7 +59,7 @@ TEST_F(Files, ReadingSaysWhatWasTriedAndWhatTheSystemAnswered) {
               "cannot read '" + folder_.string() + "': it is a folder, not a file: name a file in it");
 }
 
-TEST_F(Files, ReadingStopsAtTheLimit) {
+TEST_F(FilesOnDisk, ReadingStopsAtTheLimit) {
     ASSERT_TRUE(write_text(path("big"), std::string(1000, 'x')).ok());
     std::string text;
     EXPECT_TRUE(read_text(path("big"), text, 1000).ok());
@@ -70,14 +70,14 @@ TEST_F(Files, ReadingStopsAtTheLimit) {
     EXPECT_LE(text.size(), std::size_t{1} << 20);
 }
 
-TEST_F(Files, ReadingAPipeThatNobodyWritesDoesNotHang) {
+TEST_F(FilesOnDisk, ReadingAPipeThatNobodyWritesDoesNotHang) {
     ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
     std::string text;
     EXPECT_EQ(read_text(path("pipe"), text).message(),
               "cannot read '" + path("pipe") + "': it is not a regular file");
 }
 
-TEST_F(Files, APendingFileAppearsByCommitOnly) {
+TEST_F(FilesOnDisk, APendingFileAppearsByCommitOnly) {
     std::string temporary;
     {
         PendingFile pending(path("out.png"));
@@ -96,7 +96,7 @@ TEST_F(Files, APendingFileAppearsByCommitOnly) {
     EXPECT_EQ(file_count(), 1u);
 }
 
-TEST_F(Files, AFailureLeavesTheOldFileWhole) {
+TEST_F(FilesOnDisk, AFailureLeavesTheOldFileWhole) {
     ASSERT_TRUE(write_text(path("out.pov"), "old").ok());
     {
         PendingFile pending(path("out.pov"));
@@ -107,13 +107,13 @@ TEST_F(Files, AFailureLeavesTheOldFileWhole) {
     EXPECT_EQ(contents(path("out.pov")), "new");
 }
 
-TEST_F(Files, TwoOutputsOfOneStemDoNotShareATemporary) {
+TEST_F(FilesOnDisk, TwoOutputsOfOneStemDoNotShareATemporary) {
     PendingFile first(path("a.png")), second(path("b.png")), third(path("a.png"));
     EXPECT_NE(first.temporary_path(), second.temporary_path());
     EXPECT_NE(first.temporary_path(), third.temporary_path()) << "two writers of one file";
 }
 
-TEST_F(Files, WhereNothingCanBeWrittenSaysSo) {
+TEST_F(FilesOnDisk, WhereNothingCanBeWrittenSaysSo) {
     EXPECT_EQ(write_text(path("no/such/folder/x"), "text").message(),
               "cannot write '" + path("no/such/folder/x") + "': No such file or directory");
     fs::create_directory(path("taken"));
@@ -124,7 +124,7 @@ TEST_F(Files, WhereNothingCanBeWrittenSaysSo) {
     EXPECT_FALSE(never_written.commit().ok());
 }
 
-TEST_F(Files, AFullDiskIsAFailure) {
+TEST_F(FilesOnDisk, AFullDiskIsAFailure) {
     // SIGXFSZ is ignored by main().
     const auto before = std::signal(SIGXFSZ, SIG_IGN);
     rlimit limit = {};
@@ -138,7 +138,7 @@ TEST_F(Files, AFullDiskIsAFailure) {
     EXPECT_EQ(file_count(), 0u);
 }
 
-TEST_F(Files, ALinkStaysAndItsTargetIsReplacedWhole) {
+TEST_F(FilesOnDisk, ALinkStaysAndItsTargetIsReplacedWhole) {
     fs::create_directory(path("far"));
     ASSERT_TRUE(write_text(path("far/real.txt"), "old").ok());
     fs::create_symlink("far/real.txt", path("near.txt"));
@@ -155,7 +155,7 @@ TEST_F(Files, ALinkStaysAndItsTargetIsReplacedWhole) {
     EXPECT_TRUE(fs::is_symlink(path("ring")));
 }
 
-TEST_F(Files, PipesAndDevicesAreNotReplaced) {
+TEST_F(FilesOnDisk, PipesAndDevicesAreNotReplaced) {
     ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
     fs::create_symlink("/dev/null", path("null.png"));
     for (const std::string name : {"pipe", "null.png"}) {
@@ -169,7 +169,7 @@ TEST_F(Files, PipesAndDevicesAreNotReplaced) {
     EXPECT_EQ(file_count(), 2u);
 }
 
-TEST_F(Files, WhatAKilledRunLeftIsSweptByTheNext) {
+TEST_F(FilesOnDisk, WhatAKilledRunLeftIsSweptByTheNext) {
     for (const std::string name :
          {".a.1.2.pov", ".a.77.1.pov", ".a.1.pov", ".a.1.x.pov", ".b.1.2.pov", ".a.1.2.inc"})
         std::ofstream(path(name)) << "half";

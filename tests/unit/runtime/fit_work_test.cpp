@@ -31,9 +31,9 @@ class FitWork : public testing::Test {
         const Components components = strong_components(graph);
         const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));
         view_.camera.location = Vec3(0, 0, 5);
-        PreparedCut made = prepare_cut(graph, components, bounds, options.preparing());
+        PreparedGraph made = prepare_graph(graph, components, bounds, options.preparing());
         made.work_seconds = spent_seconds_;
-        const auto prepared = std::make_shared<const PreparedCut>(std::move(made));
+        const auto prepared = std::make_shared<const PreparedGraph>(std::move(made));
         const auto limits = [&](const TraceModel& model) {
             if (model.options.error_px != tried_px_) ++tries_;
             tried_px_ = model.options.error_px;
@@ -367,11 +367,11 @@ TEST_F(FitWork, WhatStagesTookIsNotLeftForThePicture) {
 TEST_F(FitWork, TriesShareTheirGround) {
     DetailOptions options;
     options.work_seconds = 1e-3;
-    std::shared_ptr<TraceGround> ground;
-    on_first_look_ = [&](const TraceModel& model, double) { ground = model.ground; };
+    std::shared_ptr<TraceBasis> basis;
+    on_first_look_ = [&](const TraceModel& model, double) { basis = model.basis; };
     const FittedModel model = fitted(crowd(), options, [](double) { return false; });
     EXPECT_GT(model.error_px, options.error_px);
-    EXPECT_EQ(model.model->ground, ground);
+    EXPECT_EQ(model.model->basis, basis);
 }
 
 TEST_F(FitWork, LargeGraphsAreSlower) {

@@ -152,6 +152,18 @@ TEST(Messages, AMillionWarningsAreNotAMillionMessages) {
     EXPECT_TRUE(log.illegal_matrix) << "dropped messages must still be understood";
 }
 
+TEST(Messages, AnErrorBehindAHundredWarningsIsKept) {
+    std::string text;
+    for (int i = 0; i < 500; ++i)
+        text += "File 'x.pov' line 7: Parse Warning: Degenerate triangle. Please remove.\n";
+    for (int i = 0; i < 500; ++i)
+        text += "File 'x.pov' line 8: Possible Parse Error: Cannot find image file.\n";
+    text += "File 'x.pov' line 9: Parse Error: Out of memory.\n";
+    const PovrayLog log = read(text).log;
+    ASSERT_EQ(log.messages.size(), PovrayLog::max_messages);
+    EXPECT_EQ(log.messages.back(), (PovrayMessage{Kind::error, "x.pov", 9, "Out of memory."}));
+}
+
 TEST(Messages, EndlessLineIsBounded) {
     PovrayMessageReader reader;
     const std::string block(1 << 16, 'x');

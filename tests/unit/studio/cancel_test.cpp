@@ -51,7 +51,7 @@ class TracingIsCancelled : public ::testing::TestWithParam<ManyParts> {
         const CancelFlag cancel([&] { return ++asked_ > most; });
         try {
             const auto ground =
-                std::make_shared<TraceGround>(*prepared_.prepared, prepared_.detail.work_seconds, cancel);
+                std::make_shared<TraceBasis>(*prepared_.prepared, prepared_.detail.work_seconds, cancel);
             const TraceModel model(prepared_.prepared, prepared_.viewed->view, prepared_.detail, {}, ground,
                                    cancel);
             edges_ = model.edges.size();

@@ -21,9 +21,11 @@ class MemoryHome final : public StudioHome {
     std::string version() const override { return "test"; }
     OpenedModel opened() const override { return {"crystal.rifs", "rifs crystal { }"}; }
     const Files& files() const override { return texts; }
+    std::string root() const override { return folder; }
     const Workers& workers(int) override { return alone; }
 
     MemoryFiles texts;
+    std::string folder; ///< out of which no file is used; "": any may be
     SerialWorkers alone;
 };
 

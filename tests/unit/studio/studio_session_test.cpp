@@ -330,5 +330,128 @@ TEST(StudioSession, AFilmThatCannotBeReadIsAFault) {
     EXPECT_NE(page.last("fault"), nlohmann::json());
 }
 
+constexpr const char* row_of_leaves = "use leaf = \"leaf.inst\"\nobject row { leaf }\n";
+
+TEST(StudioSession, AFileThatComesOrIsWrittenIsReadAgain) {
+    Page page;
+    shown(page, {{{"name", "row.inst"}, {"text", row_of_leaves}}});
+    EXPECT_EQ(page.last("findings")["findings"].size(), 1u);
+    EXPECT_EQ(page.count("pass"), 0u);
+    const auto work_after_look = [&] {
+        page.session.look_at_files();
+        page.work();
+        return page.session.runs().lowered;
+    };
+    EXPECT_EQ(work_after_look(), 1u) << "nothing came";
+    page.home.texts.set("leaf.inst", "object leaf { sphere }\n");
+    EXPECT_EQ(work_after_look(), 2u);
+    EXPECT_EQ(page.last("findings")["findings"], json::array());
+    EXPECT_EQ(page.last("pass")["done"], true);
+    const std::string picture = page.picture();
+    page.home.texts.set("leaf.inst", "object leaf { cylinder }\n");
+    EXPECT_EQ(work_after_look(), 3u);
+    EXPECT_NE(page.picture(), picture);
+    EXPECT_EQ(work_after_look(), 3u) << "nothing changed since";
+    page.home.texts.remove("leaf.inst");
+    shown(page, {{{"name", "row.inst"}}});
+    EXPECT_EQ(page.last("findings")["findings"].size(), 1u) << "a state looks, too";
+}
+
+TEST(StudioSession, AFindingInAUsedFileNamesItAndPointsAtItsUse) {
+    const std::string text = row_of_leaves, path = "\"leaf.inst\"";
+    const auto finding = [&](const std::string& leaf, const std::string& folder) {
+        Page page;
+        page.home.texts.set("leaf.inst", leaf);
+        page.home.folder = folder;
+        shown(page, {{{"name", "row.inst"}, {"text", text}}});
+        return page.last("findings")["findings"].at(0);
+    };
+    const json missing = finding("\nuse vein = \"vein.rifs\"\nobject leaf { vein }\n", "");
+    const json outside = finding("\nuse vein = \"../vein.rifs\"\nobject leaf { vein }\n", ".");
+    const json misspelt = finding("\nobject leaf { spere }\n", "");
+    for (const json& found : {missing, outside, misspelt}) {
+        EXPECT_TRUE(found["text"].get<std::string>().starts_with("leaf.inst, line 2: ")) << found;
+        EXPECT_EQ(found["file"], "row.inst");
+        EXPECT_EQ(found["from"], text.find(path)) << found;
+        EXPECT_EQ(found["to"], text.find(path) + path.size()) << found;
+    }
+    EXPECT_NE(outside["hint"].get<std::string>().find("'graftal studio' in a folder above"),
+              std::string::npos);
+}
+
+TEST(StudioSession, AThumbnailIsItsLastPassAlone) {
+    Page page;
+    shown(page, {{{"text", crystal}}});
+    const std::size_t tiles_before = page.tiles.size();
+    EXPECT_FALSE(page.ask("thumbnail", {{"width", 100}, {"height", 60}}).contains("error"));
+    int pixels = 0;
+    for (std::size_t i = tiles_before; i < page.tiles.size(); ++i) {
+        const SeenTile& tile = page.tiles[i];
+        EXPECT_EQ(tile.number, page.id);
+        EXPECT_EQ(tile.pass, 0u) << "nobody waited for a coarse one";
+        EXPECT_EQ(tile.block, 1);
+        pixels += tile.width * tile.height;
+    }
+    EXPECT_EQ(pixels, 100 * 60);
+}
+
+TEST(StudioSession, AModelSaysWhetherSeedAndStepsChangeIt) {
+    const auto told = [](const char* name, const char* text) {
+        Page page;
+        page.home.texts.set("twig.lsys",
+                            "lsys twig {\n steps 2\n axiom F\n F -> FF : 0.5\n F -> F[+F] : 0.5\n}\n");
+        const json model = shown(page, {{{"name", name}, {"text", text}}}).last("model");
+        return std::pair(model["chance"].get<bool>(), model["grows"].get<bool>());
+    };
+    using Said = std::pair<bool, bool>;
+    EXPECT_EQ(told("crystal.rifs", crystal), Said(false, true));
+    EXPECT_EQ(told("a.lsys", "lsys a {\n steps 2\n axiom F\n F -> FF\n}\n"), Said(false, true));
+    EXPECT_EQ(told("a.lsys", "lsys a {\n steps 2\n axiom F(1)\n F(s) -> F(normal(s, 0.1))F(s)\n}\n"),
+              Said(true, true));
+    EXPECT_EQ(told("a.lsys",
+                   "lsys b {\n steps 2\n axiom F\n F -> FF\n}\nmain lsys a {\n steps 0\n axiom [~b]f~b\n}\n"),
+              Said(false, false))
+        << "the steps of a page are those of the main block";
+    EXPECT_EQ(told("a.inst", "use twig = \"twig.lsys\"\nobject a { twig }\n"), Said(true, true));
+    EXPECT_EQ(told("a.inst", "object a { sphere }\n"), Said(false, true));
+    EXPECT_EQ(told("a.inst", "object a { scatter sphere 5 over disc 3 }\n").first, true);
+}
+
+/// The last pass of a picture that may take so much work.
+ShownPass last_pass(double work_seconds, PicturePasses passes) {
+    Session session("heavy.rifs", heavy);
+    StageOptions stages;
+    stages.view.size = {32, 18};
+    Compilation compilation;
+    PreparedView prepared;
+    prepared.viewed = session.viewed(stages, compilation);
+    prepared.detail = resolved(stages.detail, *prepared.viewed);
+    prepared.prepared = session.prepared(stages, compilation);
+    const SerialWorkers alone;
+    ProgressivePicture picture(
+        std::move(prepared), PictureWishes{.work_seconds = work_seconds},
+        [&]() -> const Workers& { return alone; }, nullptr, 0, passes);
+    ShownPass last;
+    const auto never = [] { return false; };
+    while (
+        picture.step(never, never, {[](const ShownTile&) {}, [&](const ShownPass& pass) { last = pass; }})) {
+    }
+    return last;
+}
+
+TEST(ProgressivePicture, ALastPassThatWorkHasEndedSaysWhatTheWholePictureTakes) {
+    const ShownPass whole = last_pass(1e6, PicturePasses::all);
+    EXPECT_TRUE(whole.done);
+    EXPECT_FALSE(whole.whole_seconds);
+    const ShownPass ended = last_pass(0.002, PicturePasses::all);
+    EXPECT_TRUE(ended.done);
+    ASSERT_TRUE(ended.whole_seconds);
+    EXPECT_GT(*ended.whole_seconds, 0.002);
+    const ShownPass alone = last_pass(0.002, PicturePasses::last);
+    EXPECT_EQ(alone.pass, 0);
+    EXPECT_EQ(alone.samples, ended.samples);
+    EXPECT_EQ(alone.whole_seconds, ended.whole_seconds);
+}
+
 } // namespace
 } // namespace graftal

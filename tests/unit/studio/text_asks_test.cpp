@@ -70,5 +70,54 @@ TEST_F(TextAsks, Vary) {
     EXPECT_TRUE(page.ask("vary", {{"kind", "luck"}}).contains("error"));
 }
 
+TEST_F(TextAsks, StepsAreWrittenIntoTheText) {
+    const json written = page.ask("setting", {{"name", "steps"}, {"value", 4}});
+    const auto end = static_cast<int>(shift + std::string(crystal).size());
+    EXPECT_EQ(written["edits"], (json::array({{{"from", end}, {"to", end}, {"text", "steps: 4\n"}}})))
+        << written;
+    EXPECT_TRUE(page.ask("setting", {{"name", "seed"}, {"value", 4}}).contains("error")) << "of a .rifs";
+    EXPECT_TRUE(page.ask("setting", {{"name", "angle"}, {"value", 4}}).contains("error"));
+    EXPECT_TRUE(page.ask("setting", {{"name", "steps"}, {"value", 0.5}}).contains("error"));
+}
+
+/// The text after an ask `setting`, which the state then draws without a choice of its own.
+std::string text_with(Page& page, const std::string& text, const std::string& name, int value) {
+    page.show({{"name", "plant.lsys"}, {"text", text}, {name, value}});
+    page.work();
+    const json written = page.ask("setting", {{"name", name}, {"value", value}});
+    std::string after = text;
+    const json& edits = written["edits"];
+    for (auto edit = edits.rbegin(); edit != edits.rend(); ++edit) {
+        const auto from = (*edit)["from"].get<std::size_t>(), to = (*edit)["to"].get<std::size_t>();
+        after.replace(from, to - from, (*edit)["text"].get<std::string>());
+    }
+    return after;
+}
+
+TEST_F(TextAsks, AWrittenSeedGivesThePictureOfTheChosenOne) {
+    const std::string twig =
+        "lsys twig {\n  steps 3\n  axiom F(1)\n  F(l) -> F(l)[+(normal(40,20))F(l/2)]F(l)\n}\n";
+    const std::string plant = twig + "main lsys plant {\n  steps 0\n  axiom ~twig\n}\n";
+    const std::string after = text_with(page, plant, "seed", 71);
+    EXPECT_NE(after.find("  steps 3\n  seed 71\n  axiom F(1)"), std::string::npos) << after;
+    EXPECT_NE(after.find("  steps 0\n  axiom ~twig"), std::string::npos) << "no chance there: " << after;
+    const std::string chosen = page.picture();
+    page.show({{"name", "plant.lsys"}, {"text", plant}});
+    page.work();
+    EXPECT_NE(page.picture(), chosen);
+    page.show({{"name", "plant.lsys"}, {"text", after}});
+    page.work();
+    EXPECT_EQ(page.picture(), chosen);
+    EXPECT_NE(text_with(page, after, "seed", 5).find("\n  seed 5\n"), std::string::npos);
+}
+
+TEST_F(TextAsks, StepsOfAnLSystemAreThoseOfItsMainBlock) {
+    const std::string twig = "lsys twig { steps 2 axiom F F -> FF }\nlsys plant { axiom ~twig F }\n";
+    EXPECT_EQ(text_with(page, twig, "steps", 1),
+              "lsys twig { steps 2 axiom F F -> FF }\nlsys plant { steps 1  axiom ~twig F }\n");
+    EXPECT_EQ(text_with(page, "lsys a {\n  steps: infinite\n  axiom F\n}\n", "steps", 7),
+              "lsys a {\n  steps: 7\n  axiom F\n}\n");
+}
+
 } // namespace
 } // namespace graftal

@@ -140,6 +140,44 @@ TEST(Denoise, SingleSamplesAndHostileOnesAreTakenAsTheyAre) {
         ASSERT_TRUE(std::isfinite(value));
 }
 
+/// What a pixel shows has to do with those near it alone, whatever shines elsewhere in its row and column.
+TEST(Denoise, ABrightPixelChangesNothingBeyondItsNeighbours) {
+    constexpr int reach_px = 40; // of the windows, of those that fits are averaged over, and of errors
+    const Sampled calm(4, wall, linear);
+    const std::vector<float> before = calm.denoised().picture.pixels;
+    for (const double bright : {1e4, 1e9, 1e30, 1e200}) {
+        Sampled sampled = calm;
+        constexpr int bright_x = 5, bright_y = 3;
+        sampled.samples[bright_y * width + bright_x].add(Rgb(bright));
+        const Denoised clean = sampled.denoised();
+        std::size_t i = 0;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                for (int c = 0; c < 3; ++c, ++i) {
+                    ASSERT_FALSE(std::isnan(clean.picture.pixels[i])) << bright << " at " << x << ", " << y;
+                    if (x > bright_x + reach_px || y > bright_y + reach_px)
+                        ASSERT_EQ(clean.picture.pixels[i], before[i]) << bright << " at " << x << ", " << y;
+                }
+        for (const float error : clean.errors_255)
+            ASSERT_TRUE(std::isfinite(error)) << bright;
+    }
+}
+
+TEST(Denoise, ModelsOfAnySizeHaveFeaturesOfTheirOwn) {
+    for (const float near : {1e-45f, 1e-40f, 1e-30f, 1e30f}) {
+        const auto far_wall = [near](int x, int y) {
+            PixelFeatures features = wall(x, y);
+            features[near_feature] *= near;
+            return features;
+        };
+        const auto painted = [](int, int, const PixelFeatures& f) {
+            return Rgb(0.2 + 0.5 * static_cast<double>(f[1]));
+        };
+        const Sampled sampled(4, far_wall, painted);
+        EXPECT_LT(sampled.error_of_denoised(), 0.5 * sampled.error_of_mean()) << near;
+    }
+}
+
 TEST(Denoise, WorkersChangeNothing) {
     const Sampled sampled(4, wall, linear);
     EXPECT_EQ(sampled.denoised().picture, sampled.denoised(Backwards()).picture);

@@ -13,7 +13,7 @@ namespace {
 static_assert(std::is_trivially_copyable_v<FlatNode> && std::is_trivially_copyable_v<FlatEdge>);
 
 struct Flattened {
-    std::shared_ptr<const PreparedCut> prepared;
+    std::shared_ptr<const PreparedGraph> prepared;
     std::optional<FlatGraph> flat;
 };
 

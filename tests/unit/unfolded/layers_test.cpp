@@ -36,11 +36,11 @@ TEST(Layers, PartsOfRunsAreCopiesOfTheirPrimitivesToo) {
     ASSERT_EQ(layers.source.size(), layers.cut.nodes.size());
     ASSERT_NE(layers.cut.nodes.size(), prepared->cut.nodes.size()) << "nothing to copy";
     std::size_t parts = 0;
-    for (const CutNode& node : layers.cut.nodes) {
+    for (const DetailNode& node : layers.cut.nodes) {
         if (node.cell) {
             EXPECT_EQ(edge_count(node, false), node.cell->count) << "no balls";
         }
-        for_each_edge(node, false, [&](const CutEdge& edge) {
+        for_each_edge(node, false, [&](const DetailEdge& edge) {
             ASSERT_LT(edge.child, layers.cut.nodes.size());
             if (node.cell) {
                 EXPECT_TRUE(layers.cut.nodes[edge.child].primitive);

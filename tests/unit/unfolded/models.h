@@ -24,10 +24,11 @@ inline void place(Graph& graph, ObjectId user, ObjectId master, const Affine& ma
     graph.objects[user].instances.push_back(instance);
 }
 
-inline std::shared_ptr<const PreparedCut> prepared(const Graph& graph, const DetailOptions& options) {
+inline std::shared_ptr<const PreparedGraph> prepared(const Graph& graph, const DetailOptions& options) {
     const Components components = strong_components(graph);
     const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));
-    return std::make_shared<const PreparedCut>(prepare_cut(graph, components, bounds, options.preparing()));
+    return std::make_shared<const PreparedGraph>(
+        prepare_graph(graph, components, bounds, options.preparing()));
 }
 
 } // namespace graftal::test

@@ -3,6 +3,7 @@
 #include "compiler/detail/coarser.h"
 #include "runtime/points/draw_points.h"
 #include "runtime/render/gpu_engine.h"
+#include "runtime/system/disk_files.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
@@ -57,10 +58,16 @@ int run_points(const Options& options) {
     if (!options.quiet && !points.gpu) say_what_points_take(points);
     Compilation compilation;
     bar.show("compiling...");
-    CommandSession session(options, options.operands.front());
+    std::vector<std::string> uses;
+    const HeardFiles files(disk_files(), [&](const std::string& path) { uses.push_back(path); });
+    CommandSession session(options, options.operands.front(), Keep::nothing, files);
     const Interruption interruption;
     session.set_control({interruption.flag(), {}});
-    const std::optional<PointsReport> report = draw_points(session, points, compilation);
+    StageOptions compile = points.compile;
+    compile.lower.may_be_orbit = true; // as draw_points() has it
+    std::optional<PointsReport> report;
+    if (session.lowered(compile, compilation) && !refuse_own_file(options, uses, compilation))
+        report = draw_points(session, points, compilation);
     bar.clear();
     const int status = conclude(options, compilation, interruption.signal());
     if (report && !options.quiet) say(done_text(options, *report));

@@ -8,6 +8,7 @@
 #include "runtime/render/render.h"
 #include "runtime/render/scene_files.h"
 #include "runtime/render/stopwatch.h"
+#include "runtime/system/disk_files.h"
 #include "runtime/system/interruption.h"
 #include "tools/graftal/commands.h"
 #include "tools/graftal/progress_bar.h"
@@ -58,8 +59,11 @@ int run_render(const Options& options) {
     Compilation compilation;
     const Stopwatch watch;
     bar.show("compiling...");
-    CommandSession session(options, options.operands.front());
-    const bool compiled = options.engine->compile(session, render.compile, compilation);
+    std::vector<std::string> uses;
+    const HeardFiles files(disk_files(), [&](const std::string& path) { uses.push_back(path); });
+    CommandSession session(options, options.operands.front(), Keep::nothing, files);
+    const bool compiled = options.engine->compile(session, render.compile, compilation) &&
+                          !refuse_own_file(options, uses, compilation);
     const Interruption interruption; // from here on something may be half written
     session.set_control({interruption.flag(), {}});
     std::optional<DrawReport> report;

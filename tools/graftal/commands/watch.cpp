@@ -3,10 +3,10 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <filesystem>
 #include <optional>
 #include <set>
-#include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,12 +34,6 @@ std::string names_text(const std::set<std::string>& names) {
     const auto end = std::next(names.begin(), static_cast<std::ptrdiff_t>(std::min(names.size(), most)));
     const std::string text = fmt::format("{}", fmt::join(names.begin(), end, ", "));
     return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
-}
-
-bool same_place(const std::string& a, const std::string& b) {
-    std::error_code error;
-    const auto place = std::filesystem::weakly_canonical(a, error);
-    return !error && place == std::filesystem::weakly_canonical(b, error) && !error;
 }
 
 /// Draws a model whenever it, or a file that it names, changes.
@@ -75,6 +69,7 @@ class Watching {
   private:
     /// A model may use the picture that is drawn of it; without an end, if that counted as a change.
     void watch(const std::string& path) {
+        uses_.push_back(path);
         if (!same_place(path, render_.output)) files_.add(path);
     }
 
@@ -95,7 +90,10 @@ class Watching {
         if (lowered_before > 0) session_.reload();
         bar_.show("compiling...");
         std::optional<DrawReport> drawn;
-        const bool compiled = options_.engine->compile(session_, render_.compile, compilation);
+        std::vector<std::string> used = std::exchange(uses_, {});
+        bool compiled = options_.engine->compile(session_, render_.compile, compilation);
+        if (session_.runs().lowered == lowered_before) uses_ = std::move(used); // it has asked for none again
+        compiled = compiled && !refuse_own_file(options_, uses_, compilation);
         const bool same = compiled && settled_ && session_.runs().lowered == lowered_before;
         if (compiled && !same) drawn = options_.engine->draw(session_, render_, compilation);
         bar_.clear();
@@ -152,7 +150,8 @@ class Watching {
     ProgressBar bar_;
     const Interruption interruption_;
     FileWatch files_;
-    const HeardFiles watched_; ///< the model's files
+    std::vector<std::string> uses_; ///< the model, and the files that it names
+    const HeardFiles watched_;      ///< the model's files
     CommandSession session_;
     std::set<std::string> changed_; ///< since the last line
     bool settled_ = false;          ///< the last picture is that of the model as the session knows it

@@ -78,7 +78,7 @@ void add_export(CLI::App& app, Options& options) {
     app.add_option(
            "--part", file.parts,
            fmt::format("Keep each object of this name a mesh of its own, in a node of its own, such as the "
-                       "leaves of a tree; may repeat ({})",
+                       "leaves of a tree; '*' keeps all apart; may repeat ({})",
                        endings_with(&ExportFormat::has_parts)))
         ->type_name("NAME")
         ->delimiter(',')

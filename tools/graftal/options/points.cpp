@@ -14,6 +14,7 @@
 #include "runtime/render/native_engine.h"
 #include "tools/graftal/options/shared.h"
 #include "tools/graftal/options/values.h"
+#include "tools/graftal/report.h"
 
 namespace graftal {
 
@@ -64,8 +65,11 @@ void add_measure(CLI::App& app, Tone& tone) {
 /// Fills in what `--card` leaves out; returns what is wrong with it, or "".
 std::string complete_card(Options& options) {
     const std::filesystem::path card = options.points.card;
+    if (same_place(options.points.card, options.operands.front()))
+        return fmt::format("--card: '{}' is the model: name another file", card.string());
     if (card.extension() != ".inst") return fmt::format("--card: '{}' does not end in .inst", card.string());
-    if (options.render.output.empty())
+    options.output_is_default = options.render.output.empty();
+    if (options.output_is_default)
         options.render.output = std::filesystem::path(card).replace_extension(".png").string();
     const std::filesystem::path picture = options.render.output;
     if (picture.extension() != ".png") return "--card: the name of its picture must end in .png";
@@ -141,9 +145,14 @@ std::string complete_points(Options& options) {
         if (std::string wrong = complete_card(options); !wrong.empty()) return wrong;
     if (options.render.output.empty() && options.operands.front() == "-")
         return "a model from standard input has no name: name the picture with '-o FILE'";
-    if (options.render.output.empty()) options.render.output = model_stem(options.operands.front()) + ".png";
+    if (options.render.output.empty()) {
+        options.output_is_default = true;
+        options.render.output = model_stem(options.operands.front()) + ".png";
+    }
     if (!options.points.card.empty() && options.points.tone.light)
         return "--card: a card is no light: leave --light and --glow out";
+    if (!options.points.card.empty() && options.points.tone.ground)
+        return "--card: a card is clear beside its points: leave --ground out";
     if (is_cloud_name(options.render.output))
         return options.points.colour == PointColour::density
                    ? "--color density: a cloud has no pixels to count points in; write a picture, or choose "
@@ -245,7 +254,7 @@ std::string complete_fit(Options& options) {
     if (output.empty()) output = model_stem(options.points.target) + ending;
     if (output != "-" && !output.ends_with(ending))
         return fmt::format("'{}': the name of the model must end in {}", output, ending);
-    if (draws && output == options.points.target)
+    if (draws && same_place(output, options.points.target))
         return fmt::format("'{}' is the drawing: name another file by -o", output);
     if (fit.tolerance) {
         if (!draws && !fit.blocks)
@@ -255,6 +264,9 @@ std::string complete_fit(Options& options) {
             return fmt::format("--tolerance: '{}' is not a number from {} to {}", shortest(*fit.tolerance),
                                shortest(least), shortest(most));
     }
+    const TargetCriterion usual, &criterion = options.points.criterion;
+    if (draws && (criterion.light != usual.light || criterion.threshold != usual.threshold))
+        return "--threshold and --light are for pictures, and not for drawings";
     if (draws &&
         (fit.similar || fit.in_colour || !fit.start.empty() || fit.most_maps != FitSettings().most_maps))
         return "--maps, --similar, --color and --start are for pictures, and not for drawings";

@@ -287,7 +287,8 @@ void add_irradiance(CLI::App& app, Options& options) {
                     PlantLightOptions().most_samples),
         "a whole number from 4 to 65536",
         [](const std::string& text) { return parse_whole(text, 4, 65'536); },
-        [&options](std::uint64_t samples) { options.render.samples = static_cast<int>(samples); });
+        [&options](std::uint64_t samples) { options.render.samples = static_cast<int>(samples); })
+        ->needs("--irradiance");
 }
 
 namespace {

@@ -4,27 +4,29 @@
 
 #include <fmt/format.h>
 
+#include "compiler/import/cpfg/block.h"
+
 namespace graftal {
 
 namespace {
 
 /// Assigned after the start, or twice: names of these blocks, or of productions.
-std::set<std::string> changed_names(const CpfgSystem& system) {
+std::set<std::string> changed_names(const LSystem& system) {
     std::set<std::string> changed, seen;
-    const auto take_all = [&](const CpfgBlock& block) {
-        each_assignment(block, [&](const CpfgAction& action, bool) { changed.insert(action.name); });
+    const auto take_all = [&](const LSystemBlock& block) {
+        each_assignment(block, [&](const LSystemAction& action, bool) { changed.insert(action.name); });
     };
     for (const auto& [moment, block] : system.blocks) {
-        if (moment != CpfgMoment::start) {
+        if (moment != LSystemMoment::start) {
             take_all(block);
             continue;
         }
-        each_assignment(block, [&](const CpfgAction& action, bool always) {
+        each_assignment(block, [&](const LSystemAction& action, bool always) {
             if (!seen.insert(action.name).second || !always) changed.insert(action.name);
         });
     }
     for (const auto& [section, productions] : system.productions)
-        for (const CpfgProduction& production : productions) {
+        for (const LSystemProduction& production : productions) {
             take_all(production.before);
             take_all(production.after);
         }
@@ -32,15 +34,15 @@ std::set<std::string> changed_names(const CpfgSystem& system) {
 }
 
 /// `with a = 1, b = a/2` says the same: plain values, each once, none of chance.
-bool is_plain(const CpfgProduction& production, const CpfgVariables& variables) {
+bool is_plain(const LSystemProduction& production, const CpfgVariables& variables) {
     std::set<std::string> taken;
-    for (const CpfgString* string : {&production.predecessor, &production.left, &production.right})
-        for (const CpfgModule& module : *string)
+    for (const LSystemString* string : {&production.predecessor, &production.left, &production.right})
+        for (const LSystemModule& module : *string)
             taken.insert(module.parameters.begin(), module.parameters.end());
     bool plain = true;
-    for (const CpfgBlock* block : {&production.before, &production.after})
-        for (const CpfgAction& action : *block)
-            plain = plain && action.kind == CpfgAction::Kind::assign && action.target == action.name &&
+    for (const LSystemBlock* block : {&production.before, &production.after})
+        for (const LSystemAction& action : *block)
+            plain = plain && action.kind == LSystemAction::Kind::assign && action.target == action.name &&
                     !variables.is_global(action.name) && taken.insert(action.name).second &&
                     !is_random(action.value);
     return plain;
@@ -48,16 +50,16 @@ bool is_plain(const CpfgProduction& production, const CpfgVariables& variables) 
 
 } // namespace
 
-CpfgVariables::CpfgVariables(const CpfgNames& names, const CpfgSystem& system) : blocks_(system.blocks) {
-    for (const CpfgArray& array : system.arrays)
+CpfgVariables::CpfgVariables(const CpfgNames& names, const LSystem& system) : blocks_(system.blocks) {
+    for (const LSystemArray& array : system.arrays)
         globals_.insert(array.name);
     for (const auto& [moment, block] : system.blocks)
-        each_assignment(block, [&](const CpfgAction& action, bool) { globals_.insert(action.name); });
-    const auto start = system.blocks.find(CpfgMoment::start);
+        each_assignment(block, [&](const LSystemAction& action, bool) { globals_.insert(action.name); });
+    const auto start = system.blocks.find(LSystemMoment::start);
     const std::set<std::string> changed = changed_names(system);
     if (start != system.blocks.end()) take_start(names, start->second, changed);
     std::set<std::string> known;
-    for (const CpfgArray& array : system.arrays)
+    for (const LSystemArray& array : system.arrays)
         known.insert(array.name);
     for (const Values* values : {&lets_, &variables_})
         for (const auto& [name, value] : *values)
@@ -67,14 +69,14 @@ CpfgVariables::CpfgVariables(const CpfgNames& names, const CpfgSystem& system) :
 }
 
 /// The beginning of the block whose values are known before: it becomes statements of their own.
-void CpfgVariables::take_start(const CpfgNames& names, const CpfgBlock& start,
+void CpfgVariables::take_start(const CpfgNames& names, const LSystemBlock& start,
                                const std::set<std::string>& changed) {
     std::set<std::string> let_names = names.lets(), said;
-    CpfgBlock rest;
+    LSystemBlock rest;
     bool constant = true; // nothing was left for the block yet
-    for (const CpfgAction& action : start) {
+    for (const LSystemAction& action : start) {
         const bool known =
-            constant && action.kind == CpfgAction::Kind::assign && action.target == action.name &&
+            constant && action.kind == LSystemAction::Kind::assign && action.target == action.name &&
             !is_random(action.value) && said.insert(action.name).second &&
             !names_any(action.value, [&](std::string_view name) {
                 return globals_.contains(std::string(name)) && !let_names.contains(std::string(name));
@@ -89,10 +91,10 @@ void CpfgVariables::take_start(const CpfgNames& names, const CpfgBlock& start,
             let_names.insert(action.name);
         }
     }
-    blocks_[CpfgMoment::start] = std::move(rest);
+    blocks_[LSystemMoment::start] = std::move(rest);
 }
 
-std::string cpfg_condition_text(const CpfgProduction& production, const CpfgVariables& variables,
+std::string cpfg_condition_text(const LSystemProduction& production, const CpfgVariables& variables,
                                 bool in_steps) {
     std::string condition = production.condition;
     if (in_steps) condition = condition.empty() ? "step > 0" : fmt::format("step > 0 && ({})", condition);
@@ -102,8 +104,8 @@ std::string cpfg_condition_text(const CpfgProduction& production, const CpfgVari
     if (is_plain(production, variables)) {
         text += condition.empty() ? "1" : condition;
         bool first = true;
-        for (const CpfgBlock* block : {&production.before, &production.after})
-            for (const CpfgAction& action : *block) {
+        for (const LSystemBlock* block : {&production.before, &production.after})
+            for (const LSystemAction& action : *block) {
                 text += fmt::format("{}{} = {}", first ? " with " : ", ", action.name, action.value);
                 first = false;
             }

@@ -24,15 +24,15 @@ bool is_one_of(const std::string& symbol, std::string_view characters) {
 
 } // namespace
 
-CpfgWords::CpfgWords(CpfgNames& names, const CpfgSystem& system) : names_(names), system_(system) {
+CpfgWords::CpfgWords(CpfgNames& names, const LSystem& system) : names_(names), system_(system) {
     for (const auto& [section, productions] : system.productions)
-        for (const CpfgProduction& production : productions) {
+        for (const LSystemProduction& production : productions) {
             if (!production.predecessor.empty()) rewritten_.insert(production.predecessor[0].symbol);
-            if (section == CpfgSection::homomorphism && production.predecessor.size() == 1)
+            if (section == LSystemSection::homomorphism && production.predecessor.size() == 1)
                 drawn_otherwise_.emplace(production.predecessor[0].symbol,
                                          production.predecessor[0].parameters.size());
-            for (const CpfgString* string : {&production.predecessor, &production.left, &production.right})
-                for (const CpfgModule& module : *string)
+            for (const LSystemString* string : {&production.predecessor, &production.left, &production.right})
+                for (const LSystemModule& module : *string)
                     mentioned_.insert(module.symbol);
         }
     if (names_.dialect()) find_told();
@@ -40,9 +40,11 @@ CpfgWords::CpfgWords(CpfgNames& names, const CpfgSystem& system) : names_(names)
 
 void CpfgWords::find_told() {
     std::set<std::string> symbols = mentioned_;
+    WithParameters seen;
     mentioned_.insert(names_.dialect()->drawn_late.begin(), names_.dialect()->drawn_late.end());
-    const auto take = [&](const CpfgString& string, Span span) {
-        for (const CpfgModule& module : string) {
+    const auto take = [&](const LSystemString& string, Span span) {
+        for (const LSystemModule& module : string) {
+            if (!seen.emplace(module.symbol, module.parameters.size()).second) continue;
             symbols.insert(module.symbol);
             if (!told_.contains(module.symbol) && names_.dialect()->told(module, span))
                 told_.insert(module.symbol);
@@ -50,7 +52,7 @@ void CpfgWords::find_told() {
     };
     take(system_.axiom, system_.axiom_span);
     for (const auto& [section, productions] : system_.productions)
-        for (const CpfgProduction& production : productions)
+        for (const LSystemProduction& production : productions)
             take(production.successor, production.span);
     has_long_names_ = std::ranges::any_of(symbols, [&](const std::string& symbol) {
         const std::string name = name_in_dialect(symbol);
@@ -59,16 +61,17 @@ void CpfgWords::find_told() {
     });
 }
 
-int CpfgWords::depth_of(CpfgSection section) const {
+int CpfgWords::depth_of(LSystemSection section) const {
     const auto known = system_.depth.find(section);
     return known == system_.depth.end() ? 1 : std::atoi(known->second.substr(0, 9).c_str());
 }
 
-std::string CpfgWords::formals(const CpfgString& string) {
+std::string CpfgWords::formals(const LSystemString& string) {
     std::string text;
-    for (const CpfgModule& module : string) {
-        text += (text.empty() ? "" : " ") + name_of(module.symbol);
-        if (!module.has_parentheses || is_one_of(module.symbol, brackets)) continue;
+    for (const LSystemModule& module : string) {
+        const std::string name = name_of(module.symbol);
+        text += (text.empty() ? "" : " ") + name;
+        if (!module.has_parentheses || is_one_of(name, brackets)) continue;
         text += "(";
         for (std::size_t i = 0; i < module.parameters.size(); ++i)
             text += (i == 0 ? "" : ", ") + module.parameters[i];
@@ -93,7 +96,7 @@ std::string CpfgWords::name_in_dialect(const std::string& symbol) const {
     const std::string same = names_.dialect()->same(symbol);
     if (!same.empty() && !is_renamed(symbol)) return same;
     std::string name;
-    if (std::ranges::all_of(symbol, is_cpfg_name))
+    if (symbol.size() > 1 && std::ranges::all_of(symbol, is_cpfg_name))
         name = symbol;
     else
         for (const char c : symbol)
@@ -136,9 +139,9 @@ std::string CpfgWords::name_of(const std::string& symbol) {
     return name;
 }
 
-std::string CpfgWords::text_of(const CpfgString& string, Span span, Use use) {
+std::string CpfgWords::text_of(const LSystemString& string, Span span, Use use) {
     std::string text;
-    for (const CpfgModule& module : string) {
+    for (const LSystemModule& module : string) {
         const std::string next = text_of(module, span, use);
         // Letters beside each other may make up a name.
         const bool joins = has_long_names_ && !text.empty() && !next.empty() && is_cpfg_name(text.back()) &&
@@ -148,21 +151,22 @@ std::string CpfgWords::text_of(const CpfgString& string, Span span, Use use) {
     return text;
 }
 
-std::string CpfgWords::text_of(const CpfgModule& module, Span span, Use use) {
+std::string CpfgWords::text_of(const LSystemModule& module, Span span, Use use) {
     if (use == Use::drawn && module.symbol == "%" && !names_.dialect()) return ""; // cpfg cuts nothing there
-    const bool otherwise = drawn_otherwise_.contains({module.symbol, module.parameters.size()});
     if (use == Use::word && is_renamed(module.symbol)) {
         stand_ins_.insert({module.symbol, module.parameters.size()});
         std::string text = name_of(module.symbol);
         return text + parameters(module, span, false);
     }
-    return own_text_of(module, span, use == Use::drawn && otherwise);
+    const bool otherwise =
+        use == Use::drawn && drawn_otherwise_.contains({module.symbol, module.parameters.size()});
+    return own_text_of(module, span, otherwise);
 }
 
 std::string CpfgWords::stand_ins(Span span) {
     std::string text;
     for (const auto& [symbol, arity] : stand_ins_) {
-        CpfgModule module;
+        LSystemModule module;
         module.symbol = symbol;
         module.has_parentheses = arity > 0;
         for (std::size_t i = 0; i < arity; ++i)
@@ -175,7 +179,7 @@ std::string CpfgWords::stand_ins(Span span) {
 
 /// `other_arity`: no production of the homomorphism is for this number of parameters. The turtle passes over
 /// parameters beyond those that it needs.
-std::string CpfgWords::parameters(const CpfgModule& module, Span span, bool other_arity) {
+std::string CpfgWords::parameters(const LSystemModule& module, Span span, bool other_arity) {
     std::string text;
     for (const std::string& parameter : module.parameters)
         text += (text.empty() ? "" : ", ") + names_.expression(parameter, span);
@@ -204,12 +208,12 @@ std::string CpfgWords::default_parameter(const std::string& symbol, Span span) {
 }
 
 /// The text that tells our turtle what the module tells cpfg's.
-std::string CpfgWords::own_text_of(const CpfgModule& module, Span span, bool other_arity) {
+std::string CpfgWords::own_text_of(const LSystemModule& module, Span span, bool other_arity) {
     const std::string& symbol = module.symbol;
     if (const CpfgDialect* const dialect = names_.dialect()) {
         if (const std::optional<std::string> told = dialect->told(module, span)) return *told;
-        if (is_one_of(symbol, brackets)) return symbol;
         const std::string same = dialect->same(symbol);
+        if (is_one_of(same, brackets)) return same;
         return (same.empty() ? name_of(symbol) : same) + parameters(module, span, other_arity);
     }
     if (symbol[0] == '@' && symbol.size() > 1) return directive(module, span);
@@ -231,14 +235,15 @@ std::string CpfgWords::own_text_of(const CpfgModule& module, Span span, bool oth
     return name_of(symbol) + parameters(module, span, other_arity);
 }
 
-std::string CpfgWords::colour_step(const CpfgModule& module) const {
+std::string CpfgWords::colour_step(const LSystemModule& module) const {
     constexpr int colours = 8; // of our list: as many steps lead back
     const int step = names_.view().colour_increment;
     const int times = (step % colours + colours) % colours;
     return std::string(static_cast<std::size_t>(times), module.symbol[0]);
 }
 
-std::string CpfgWords::query(const CpfgModule& module, Span span) {
+std::string CpfgWords::query(const LSystemModule& module, Span span) {
+    asks_environment_ = asks_environment_ || module.symbol == "?E";
     if (module.symbol == "?P" || module.symbol == "?H" || module.symbol == "?L" || module.symbol == "?E")
         return module.symbol + parameters(module, span, false);
     if (module.symbol == "?" && !module.has_parentheses) {
@@ -251,7 +256,7 @@ std::string CpfgWords::query(const CpfgModule& module, Span span) {
     return "";
 }
 
-std::string CpfgWords::surface(const CpfgModule& module, Span span) {
+std::string CpfgWords::surface(const LSystemModule& module, Span span) {
     const auto known = names_.view().surfaces.find(module.symbol.size() > 1 ? module.symbol[1] : ' ');
     if (known == names_.view().surfaces.end()) {
         names_.warn_once(
@@ -274,7 +279,7 @@ std::string CpfgWords::surface_name(char letter) {
     return "surface_" + std::string(1, letter);
 }
 
-std::string CpfgWords::width(const CpfgModule& module, Span span) {
+std::string CpfgWords::width(const LSystemModule& module, Span span) {
     if (names_.view().width_in_pixels) {
         names_.warn_once(span, "widths in pixels are left out: lines are as thick as the figure asks");
         return "";
@@ -285,7 +290,7 @@ std::string CpfgWords::width(const CpfgModule& module, Span span) {
     return fmt::format("@I({})", module.symbol == "!" ? -step : step);
 }
 
-std::string CpfgWords::elasticity(const CpfgModule& module, Span span) {
+std::string CpfgWords::elasticity(const LSystemModule& module, Span span) {
     if (module.parameters.empty()) {
         const double step = names_.view().elasticity_increment;
         if (step == 0) return "";
@@ -296,7 +301,7 @@ std::string CpfgWords::elasticity(const CpfgModule& module, Span span) {
     return "T(" + names_.expression(module.parameters[0], span) + ")";
 }
 
-std::string CpfgWords::tropism(const CpfgModule& module, Span span) {
+std::string CpfgWords::tropism(const LSystemModule& module, Span span) {
     const std::string number = module.parameters.empty()
                                    ? std::string("1")
                                    : std::string(trimmed(names_.expanded(module.parameters[0], span, true)));
@@ -313,7 +318,7 @@ std::string CpfgWords::tropism(const CpfgModule& module, Span span) {
     return fmt::format("@T({}, {})", place, value);
 }
 
-std::string CpfgWords::directive(const CpfgModule& module, Span span) {
+std::string CpfgWords::directive(const LSystemModule& module, Span span) {
     constexpr std::string_view same[] = {"@o", "@c", "@O", "@Gs", "@Gc", "@Ge", "@Di", "@Dd", "@M"};
     if (std::ranges::find(same, module.symbol) != std::end(same)) {
         const bool cylinder = module.symbol[1] == 'G';

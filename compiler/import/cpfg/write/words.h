@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "compiler/import/cpfg/names.h"
-#include "compiler/import/cpfg/system.h"
+#include "compiler/import/l_system.h"
 
 namespace graftal {
 
@@ -14,26 +14,27 @@ namespace graftal {
 class CpfgWords {
   public:
     /// Both must outlive this.
-    CpfgWords(CpfgNames& names, const CpfgSystem& system);
+    CpfgWords(CpfgNames& names, const LSystem& system);
 
     /// A string that productions go on to rewrite, or the homomorphism to draw.
-    std::string text_of(const CpfgString& string, Span span) { return text_of(string, span, Use::word); }
+    std::string text_of(const LSystemString& string, Span span) { return text_of(string, span, Use::word); }
     /// The successor of a homomorphism whose modules are drawn as they are.
-    std::string drawn_text_of(const CpfgString& string, Span span) {
+    std::string drawn_text_of(const LSystemString& string, Span span) {
         return text_of(string, span, Use::drawn);
     }
     /// A predecessor or a context.
-    std::string formals(const CpfgString& string);
+    std::string formals(const LSystemString& string);
     /// The module of ours that has this name in productions; "" for what has none.
     std::string name_of(const std::string& symbol);
 
     /// Number of times that the productions of a section are applied, each time to their results.
-    int depth_of(CpfgSection section) const;
+    int depth_of(LSystemSection section) const;
 
     // Features that the strings so far have used:
     const std::set<std::string>& declared() const { return declared_; } ///< names of modules to declare
     const std::set<char>& surfaces() const { return used_surfaces_; }
     bool uses_cut() const { return uses_cut_; }
+    bool asks_environment() const { return asks_environment_; }
     bool bends_of_old() const { return bends_of_old_; }                 ///< by `_`
     const std::set<std::size_t>& tropisms() const { return tropisms_; } ///< their numbers
     /// Productions of `interpret` that draw modules which have other names here than where they are drawn.
@@ -49,21 +50,21 @@ class CpfgWords {
     bool is_renamed(const std::string& symbol) const;
     void find_told();
     std::string name_in_dialect(const std::string& symbol) const;
-    std::string text_of(const CpfgString& string, Span span, Use use);
-    std::string text_of(const CpfgModule& module, Span span, Use use);
-    std::string own_text_of(const CpfgModule& module, Span span, bool other_arity);
-    std::string parameters(const CpfgModule& module, Span span, bool other_arity);
+    std::string text_of(const LSystemString& string, Span span, Use use);
+    std::string text_of(const LSystemModule& module, Span span, Use use);
+    std::string own_text_of(const LSystemModule& module, Span span, bool other_arity);
+    std::string parameters(const LSystemModule& module, Span span, bool other_arity);
     std::string default_parameter(const std::string& symbol, Span span);
-    std::string surface(const CpfgModule& module, Span span);
-    std::string width(const CpfgModule& module, Span span);
-    std::string elasticity(const CpfgModule& module, Span span);
-    std::string directive(const CpfgModule& module, Span span);
-    std::string tropism(const CpfgModule& module, Span span);
-    std::string colour_step(const CpfgModule& module) const;
-    std::string query(const CpfgModule& module, Span span);
+    std::string surface(const LSystemModule& module, Span span);
+    std::string width(const LSystemModule& module, Span span);
+    std::string elasticity(const LSystemModule& module, Span span);
+    std::string directive(const LSystemModule& module, Span span);
+    std::string tropism(const LSystemModule& module, Span span);
+    std::string colour_step(const LSystemModule& module) const;
+    std::string query(const LSystemModule& module, Span span);
 
     CpfgNames& names_;
-    const CpfgSystem& system_;
+    const LSystem& system_;
     using WithParameters = std::set<std::pair<std::string, std::size_t>>; ///< symbols, numbers of parameters
     std::set<std::string> mentioned_; ///< symbols that productions look at
     std::set<std::string> rewritten_; ///< symbols that begin a predecessor
@@ -73,7 +74,7 @@ class CpfgWords {
     WithParameters stand_ins_;
     std::set<std::string> declared_;
     std::set<char> used_surfaces_;
-    bool uses_cut_ = false, bends_of_old_ = false;
+    bool uses_cut_ = false, asks_environment_ = false, bends_of_old_ = false;
     std::set<std::size_t> tropisms_;
 };
 

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/import/cpfg/dialect.h"
+#include "compiler/import/cpfg/block.h"
 #include "compiler/import/cpfg/expression.h"
 #include "compiler/import/cpfg/string.h"
 #include "compiler/import/cpfg/write/variables.h"
@@ -104,8 +104,7 @@ std::string environment_text(const std::string& file_name, CpfgNames& names, Spa
 
 class SystemWriter {
   public:
-    SystemWriter(CpfgNames& names, CpfgSystem& system, const ForeignModel& model,
-                 const std::string& environment)
+    SystemWriter(CpfgNames& names, LSystem& system, const ForeignModel& model, const std::string& environment)
         : names_(names), system_(system), model_(model), environment_(environment), words_(names, system),
           variables_(names, system) {}
 
@@ -115,7 +114,8 @@ class SystemWriter {
         const std::string filter = filter_text();
         Translation out{"lsys", {}, {}};
         comments(out, system_.head_comments, "");
-        write_own_lines(out, &CpfgDialect::head);
+        const CpfgDialect* const dialect = names_.dialect();
+        if (dialect) out.append(dialect->head);
         for (const char letter : words_.surfaces())
             out.line(fmt::format("use {} = \"{}\"", CpfgWords::surface_name(letter),
                                  names_.view().surfaces.at(letter).file));
@@ -124,54 +124,49 @@ class SystemWriter {
         write_lets(out, body.text);
         for (const CpfgFunction& table : names_.tables())
             write_table(out, table);
-        out.line(fmt::format("  angle {}", names_.view().angle_deg));
+        if (!dialect || dialect->angle_deg) out.line(fmt::format("  angle {}", names_.view().angle_deg));
         if (names_.view().width && !names_.view().width_in_pixels)
             out.line(fmt::format("  width {}", *names_.view().width));
         write_tropisms(out);
-        write_own_lines(out, &CpfgDialect::settings);
+        if (dialect) out.append(dialect->settings);
         if (!system_.length.empty()) out.line("  steps " + system_.length, system_.length_span);
         if (!system_.seed.empty()) out.line("  seed " + system_.seed, system_.seed_span);
-        if (body.text.find("?E") != std::string::npos) write_environment(out);
+        if (words_.asks_environment()) write_environment(out);
         if (!filter.empty()) out.line(filter, system_.filter_span);
         if (has_contexts()) out.line("  precedence text");
         write_variables(out);
         comments(out, system_.axiom_comments, "  ");
-        out.text += body.text;
-        out.origins.insert(out.origins.end(), body.origins.begin(), body.origins.end());
+        out.append(body);
         return out;
     }
 
   private:
-    void write_own_lines(Translation& out, std::vector<std::string> CpfgDialect::*lines) const {
-        if (!names_.dialect()) return;
-        for (const std::string& line : names_.dialect()->*lines)
-            out.line(line);
+    const std::vector<LSystemProduction>& productions(LSystemSection section) const {
+        return system_.productions.at(section);
     }
-
-    std::vector<CpfgProduction>& productions(CpfgSection section) { return system_.productions[section]; }
 
     /// cpfg chooses by the shares of the probabilities in their sum.
     void share_probabilities() {
         for (auto& [section, productions] : system_.productions) {
             std::map<std::string, double> sums;
-            const auto key = [](const CpfgProduction& p) {
+            const auto key = [](const LSystemProduction& p) {
                 return p.predecessor.empty()
                            ? ""
                            : p.predecessor[0].symbol + std::to_string(p.predecessor[0].parameters.size());
             };
-            const auto number = [&](const CpfgProduction& p) {
+            const auto number = [&](const LSystemProduction& p) {
                 const std::string text(trimmed(names_.expanded(p.probability, p.span, true)));
                 const auto [value, length] = leading_number(text);
                 return length > 0 && length == text.size() && std::isfinite(value) ? value : -1;
             };
             bool plain = true;
-            for (const CpfgProduction& p : productions) {
+            for (const LSystemProduction& p : productions) {
                 if (p.probability.empty()) continue;
-                plain = plain && number(p) >= 0 && p.condition.empty() && !p.has_left && !p.has_right;
+                plain = plain && number(p) >= 0 && p.condition.empty() && p.left.empty() && p.right.empty();
                 sums[key(p)] += number(p);
             }
             if (!plain) continue;
-            for (CpfgProduction& p : productions)
+            for (LSystemProduction& p : productions)
                 if (!p.probability.empty() && std::abs(sums[key(p)] - 1) > 1e-9 && sums[key(p)] > 0)
                     p.probability += fmt::format("/{}", sums[key(p)]);
         }
@@ -182,25 +177,27 @@ class SystemWriter {
         Translation body{"lsys", {}, {}};
         const std::string axiom = words_.text_of(system_.axiom, system_.axiom_span);
         Translation rest{"lsys", {}, {}};
-        for (const CpfgProduction& production : productions(CpfgSection::productions))
-            write_production(rest, production, "  ", CpfgSection::productions);
-        write_section(rest, CpfgSection::decomposition, "decompose");
-        write_section(rest, CpfgSection::homomorphism, "interpret");
+        for (const LSystemProduction& production : productions(LSystemSection::productions))
+            write_production(rest, production, "  ", LSystemSection::productions);
+        comments(rest, system_.tail_comments, "  ");
+        write_section(rest, LSystemSection::decomposition, "decompose");
+        write_section(rest, LSystemSection::homomorphism, "interpret");
         write_stand_ins(rest);
         if (words_.uses_cut()) { // in cpfg a step goes by before it cuts
             rest.line(fmt::format("  {} -> %", CpfgWords::cut_name));
             if (!names_.view().draws_past_cuts)
                 rest.line(fmt::format("  interpret {} -> %", CpfgWords::cut_name));
         }
+        if (names_.dialect()) rest.append(names_.dialect()->ending);
         rest.line("}");
-        body.line("  axiom " + start_state() + axiom, system_.axiom_span);
-        body.text += rest.text;
-        body.origins.insert(body.origins.end(), rest.origins.begin(), rest.origins.end());
+        body.line("  axiom " + start_state() + axiom + remark_text(system_.axiom_remark), system_.axiom_span);
+        body.append(rest);
         return body;
     }
 
-    /// The turtle's state at the start by the view file, as modules.
+    /// The turtle's state at the start, as modules.
     std::string start_state() const {
+        if (names_.dialect()) return names_.dialect()->start;
         const CpfgView& view = names_.view();
         std::string text = view.has_colour ? fmt::format(";({})", view.colour) : "";
         if (view.elasticity != 0) text += fmt::format("T({})", view.elasticity);
@@ -226,7 +223,7 @@ class SystemWriter {
                 text += value + " ";
         for (const auto& [moment, block] : variables_.blocks())
             text += cpfg_block_text(block) + " ";
-        for (const CpfgArray& array : system_.arrays)
+        for (const LSystemArray& array : system_.arrays)
             text += array.sizes + " " + array.values + " ";
         // Macros that are numbers may use others.
         const std::vector<CpfgMacro>& macros = names_.source().macros;
@@ -236,25 +233,25 @@ class SystemWriter {
             if (names_.lets().contains(macro.name) && uses(text, macro.name))
                 out.line(fmt::format("  let {} = {}", macro.name, macro.body), macro.span);
         for (const auto& [name, value] : variables_.lets())
-            out.line(fmt::format("  let {} = {}", name, value), span_of(CpfgMoment::start));
+            out.line(fmt::format("  let {} = {}", name, value), span_of(LSystemMoment::start));
     }
 
-    Span span_of(CpfgMoment moment) const {
+    Span span_of(LSystemMoment moment) const {
         const auto known = system_.block_spans.find(moment);
         return known == system_.block_spans.end() ? Span() : known->second;
     }
 
     void write_variables(Translation& out) {
-        for (const CpfgArray& array : system_.arrays)
+        for (const LSystemArray& array : system_.arrays)
             out.line(fmt::format("  array {}{}{}{}", array.name, array.sizes,
                                  array.values.empty() ? "" : " = ", array.values),
                      array.span);
         for (const auto& [name, value] : variables_.variables())
-            out.line(fmt::format("  variable {} = {}", name, value), span_of(CpfgMoment::start));
-        constexpr std::pair<CpfgMoment, const char*> words[] = {{CpfgMoment::start, "start"},
-                                                                {CpfgMoment::start_each, "start each"},
-                                                                {CpfgMoment::end_each, "end each"},
-                                                                {CpfgMoment::end, "end"}};
+            out.line(fmt::format("  variable {} = {}", name, value), span_of(LSystemMoment::start));
+        constexpr std::pair<LSystemMoment, const char*> words[] = {{LSystemMoment::start, "start"},
+                                                                   {LSystemMoment::start_each, "start each"},
+                                                                   {LSystemMoment::end_each, "end each"},
+                                                                   {LSystemMoment::end, "end"}};
         for (const auto& [moment, word] : words) {
             const auto block = variables_.blocks().find(moment);
             if (block != variables_.blocks().end() && !block->second.empty())
@@ -263,18 +260,16 @@ class SystemWriter {
     }
 
     bool has_contexts() const {
-        const auto known = system_.productions.find(CpfgSection::productions);
-        return known != system_.productions.end() &&
-               std::ranges::any_of(known->second, [](const CpfgProduction& production) {
-                   return !production.left.empty() || !production.right.empty();
-               });
+        return std::ranges::any_of(productions(LSystemSection::productions), [](const LSystemProduction& p) {
+            return !p.left.empty() || !p.right.empty();
+        });
     }
 
     /// cpfg decomposes in steps only, and so not the axiom.
     bool decomposes_axiom() {
-        const auto& decompositions = productions(CpfgSection::decomposition);
-        return std::ranges::any_of(system_.axiom, [&](const CpfgModule& module) {
-            return std::ranges::any_of(decompositions, [&](const CpfgProduction& production) {
+        const auto& decompositions = productions(LSystemSection::decomposition);
+        return std::ranges::any_of(system_.axiom, [&](const LSystemModule& module) {
+            return std::ranges::any_of(decompositions, [&](const LSystemProduction& production) {
                 return production.predecessor[0].symbol == module.symbol;
             });
         });
@@ -349,16 +344,16 @@ class SystemWriter {
     void check_brackets() {
         const bool listed = system_.filter_symbols.find('[') != std::string::npos;
         if (listed == (system_.filter == "consider")) return;
-        for (const CpfgProduction& production : productions(CpfgSection::productions))
+        for (const LSystemProduction& production : productions(LSystemSection::productions))
             if (!production.right.empty())
                 names_.error(production.span,
                              "a right context that sees through ignored brackets has no translation");
     }
 
     /// A dialect lists its symbols with blanks between them.
-    CpfgString filtered_modules() {
+    LSystemString filtered_modules() {
         if (!names_.dialect()) return read_cpfg_string(system_.filter_symbols, names_, system_.filter_span);
-        CpfgString modules;
+        LSystemString modules;
         std::istringstream words(system_.filter_symbols);
         for (std::string word; words >> word;)
             modules.emplace_back().symbol = word;
@@ -370,7 +365,7 @@ class SystemWriter {
         check_brackets();
         std::set<std::string> names;
         std::string text;
-        for (const CpfgModule& module : filtered_modules()) {
+        for (const LSystemModule& module : filtered_modules()) {
             if (std::string_view("[]{}").find(module.symbol) != std::string_view::npos) continue;
             const std::string name = words_.name_of(module.symbol);
             if (names.insert(name).second) text += " " + name;
@@ -378,40 +373,41 @@ class SystemWriter {
         return text.empty() ? text : "  " + system_.filter + text;
     }
 
-    void write_section(Translation& out, CpfgSection section, const char* word) {
+    void write_section(Translation& out, LSystemSection section, const char* word) {
         if (productions(section).empty()) return;
         out.line(fmt::format("  {} {{", word));
-        for (const CpfgProduction& production : productions(section))
+        for (const LSystemProduction& production : productions(section))
             write_production(out, production, "    ", section);
         out.line("  }");
     }
 
-    void write_production(Translation& out, const CpfgProduction& production, const char* indent,
-                          CpfgSection section) {
+    void write_production(Translation& out, const LSystemProduction& production, const char* indent,
+                          LSystemSection section) {
         comments(out, production.comments, indent);
         std::string text = indent;
-        if (section == CpfgSection::productions && production.has_left && !production.left.empty())
+        if (section == LSystemSection::productions && !production.left.empty())
             text += words_.formals(production.left) + " < ";
         text += words_.formals(production.predecessor);
-        if (section == CpfgSection::productions && production.has_right && !production.right.empty())
+        if (section == LSystemSection::productions && !production.right.empty())
             text += " > " + words_.formals(production.right);
-        if (section != CpfgSection::productions && production.predecessor.size() > 1)
+        if (section != LSystemSection::productions && production.predecessor.size() > 1)
             names_.error(production.span,
                          "a decomposition or homomorphism of several modules has no translation");
-        if (section == CpfgSection::decomposition && (!production.left.empty() || !production.right.empty()))
+        if (section == LSystemSection::decomposition &&
+            (!production.left.empty() || !production.right.empty()))
             names_.error(production.span, "a context of a decomposition has no translation");
         text += cpfg_condition_text(production, variables_,
-                                    section == CpfgSection::decomposition && decomposes_axiom());
-        const bool drawn = section == CpfgSection::homomorphism && words_.depth_of(section) == 1;
+                                    section == LSystemSection::decomposition && decomposes_axiom());
+        const bool drawn = section == LSystemSection::homomorphism && words_.depth_of(section) == 1;
         const std::string successor = drawn ? words_.drawn_text_of(production.successor, production.span)
                                             : words_.text_of(production.successor, production.span);
         text += " -> " + (successor.empty() ? "*" : successor);
         if (!production.probability.empty()) text += " : " + production.probability;
-        out.line(text, production.span);
+        out.line(text + remark_text(production.remark), production.span);
     }
 
     CpfgNames& names_;
-    CpfgSystem& system_;
+    LSystem& system_;
     const ForeignModel& model_;
     const std::string& environment_; ///< the file of its program
     CpfgWords words_;
@@ -420,9 +416,18 @@ class SystemWriter {
 
 } // namespace
 
-Translation write_cpfg_system(CpfgNames& names, CpfgSystem system, const ForeignModel& model,
+Translation write_cpfg_system(CpfgNames& names, LSystem system, const ForeignModel& model,
                               const std::string& environment) {
     return SystemWriter(names, system, model, environment).write();
+}
+
+Translation write_dialect(const ForeignFile& file, LSystem system, const ForeignModel& model,
+                          const CpfgDialect& dialect) {
+    CpfgView view;
+    view.angle_deg = dialect.angle_deg.value_or(view.angle_deg);
+    const CpfgSource source;
+    CpfgNames names(file, source, view, &dialect);
+    return SystemWriter(names, system, model, "").write();
 }
 
 } // namespace graftal

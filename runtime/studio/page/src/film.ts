@@ -53,7 +53,9 @@ export class Film {
       .map(([value, label]) => element('option', { value }, label)));
   private readonly save = element('button', { type: 'button', class: 'quiet', id: 'save-film', onclick: () => void this.write() }, 'Save film');
   private readonly cancel = element('button', { type: 'button', class: 'quiet', id: 'stop-film', hidden: true, onclick: () => void this.studio.session.ask('stop') }, 'Stop');
-  private readonly bar = element('progress', { max: 1, hidden: true, 'aria-label': 'Share of the film that is drawn' });
+  private readonly bar = element('progress', { max: 1, 'aria-label': 'Share of the film that is drawn' });
+  private readonly doing = element('span', { role: 'status' });
+  private readonly work = element('div', { class: 'line', hidden: true }, this.bar, this.doing);
   private readonly command = element('pre', { tabindex: 0, role: 'region', 'aria-label': 'Command line of the film' });
   private readonly soon_command = soon(() => void this.show_command(), 300);
   private file_id = 0;
@@ -63,7 +65,8 @@ export class Film {
     this.element = element('div', {},
       element('h2', {}, 'Film'),
       element('div', { class: 'line' }, element('label', {}, this.fps, ' pictures a second'), element('label', {}, this.width, ' pixels wide')),
-      element('div', { class: 'line' }, element('label', { for: 'film-kind' }, 'As '), this.kind, this.save, this.cancel, this.bar),
+      element('div', { class: 'line' }, element('label', { for: 'film-kind' }, 'As '), this.kind, this.save, this.cancel),
+      this.work,
       element('h2', {}, 'Key frames'),
       element('p', { class: 'note' }, 'Set the knobs, then keep them for a moment of the film. Between two key frames the knobs move evenly.'),
       element('div', { class: 'line' }, element('button', { type: 'button', class: 'quiet', id: 'add-key', onclick: () => this.add() }, 'Keep the knobs here')),
@@ -103,10 +106,20 @@ export class Film {
   }
 
   /** The share of a file under way. */
-  progress(id: number, share: number): void {
-    if (id !== this.file_id) return;
-    this.bar.value = share;
-    if (share >= 1) this.studio.say('All frames are drawn. Writing the file…');
+  progress(share: number): void {
+    const { frames } = this, drawn = Math.round(share * frames);
+    if (drawn < frames) {
+      this.bar.value = share;
+      this.doing.textContent = `Drawing: ${drawn} of ${frames} pictures are there`;
+    } else {
+      this.bar.removeAttribute('value');
+      this.doing.textContent = `All ${frames} pictures are drawn. Writing ${this.output} …`;
+    }
+  }
+
+  /** Whether a file under way is the film. */
+  is_film(id: number): boolean {
+    return id === this.file_id;
   }
 
   private says({ set }: KeyFrame): string {
@@ -135,15 +148,23 @@ export class Film {
     return { width, height: even((width * height_px) / width_px) };
   }
 
+  private get fps_number(): number {
+    return Number(this.fps.value) || 25;
+  }
+
+  private get frames(): number {
+    return Math.max(2, Math.round(this.course().seconds * this.fps_number));
+  }
+
   private get output(): string {
     return this.studio.history.now.name.replace(/^.*[\\/]/, '').replace(/\.\w+$/, '') + this.kind.value;
   }
 
   /** As asks and states have it. */
   film(): object {
-    const { keys } = this.studio.history.now, { seconds, steps } = this.course(), fps = Number(this.fps.value) || 25;
+    const { keys } = this.studio.history.now, { seconds, steps } = this.course(), fps = this.fps_number;
     return {
-      frames: Math.max(2, Math.round(seconds * fps)), fps, steps,
+      frames: this.frames, fps, steps,
       set: Object.fromEntries(moving(keys).map((name) => [name, shares(keys, name, seconds)])),
     };
   }
@@ -151,8 +172,9 @@ export class Film {
   private async write(): Promise<void> {
     const { studio } = this, folder = this.kind.value === '/';
     this.save.disabled = true;
-    this.cancel.hidden = this.bar.hidden = false;
+    this.cancel.hidden = this.work.hidden = false;
     this.bar.value = 0;
+    this.doing.textContent = 'Beginning …';
     try {
       const written = studio.session.ask('write', { ...(folder ? { path: this.output } : { suffix: this.kind.value }), ...this.size, film: this.film() });
       this.file_id = studio.session.coming_id - 1;
@@ -163,7 +185,7 @@ export class Film {
       studio.say(why === 'interrupted' ? 'The film was stopped.' : why);
     } finally {
       this.save.disabled = false;
-      this.cancel.hidden = this.bar.hidden = true;
+      this.cancel.hidden = this.work.hidden = true;
     }
   }
 }

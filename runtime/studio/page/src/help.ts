@@ -3,8 +3,9 @@ import { element } from './dom';
 
 const parts: [string, [string, string][]][] = [
   ['Picture', [
-    ['drag, or arrow keys', 'orbit'],
-    ['Shift and drag, or Shift and arrow keys', 'pan'],
+    ['drag, or arrow keys', 'orbit; pan a flat model'],
+    ['Shift and drag, or Shift and arrow keys', 'pan; orbit a flat model'],
+    ['drag by the right or middle button', 'pan'],
     ['Ctrl and drag, or Page Up and Page Down', 'move the camera nearer and farther'],
     ['wheel, two fingers, or + and −', 'zoom, without an end'],
     ['0', 'show the whole model'],
@@ -26,7 +27,9 @@ const parts: [string, [string, string][]][] = [
   ['Maps', [
     ['click on a box', 'select the map in the text; a second click, the part that is there'],
     ['drag a box', 'move the map'],
-    ['corner, edge, knob', 'scale; stretch and shear; turn'],
+    ['square at a corner', 'scale'],
+    ['diamond at a side', 'stretch and shear'],
+    ['round knob with an arrow', 'turn about the foot, where the cross is; with Shift by steps of 15°; with Alt about the middle'],
     ['arrow keys', 'move; with Shift turn and scale'],
   ]],
   ['Everywhere', [

@@ -15,7 +15,7 @@ import { PointTool } from './point';
 import { Presets } from './presets';
 import { first_id, Session, type Listener, type Size } from './session';
 import { Status } from './status';
-import { edited, type Studio } from './studio';
+import { edited, type Offer, type Studio } from './studio';
 import { Tabs } from './tabs';
 import { Time } from './time';
 import { home_transport } from './transport';
@@ -51,6 +51,12 @@ class Page implements Studio, Listener {
   private readonly tabs: Tabs;
   private complete = 0;
   private readonly sent_ms = new Map<number, number>();
+  /** The camera that the session chose for a film. */
+  private film_view: Camera | null = null;
+  /** The last state left it to the session to choose that. */
+  private frames_film = false;
+  /** The camera, address and zoom of before. */
+  private seen: unknown[] = [];
   /** From states to the first pixels of their pictures: the last ones. */
   readonly latencies_ms: number[] = [];
   private readonly save = soon(() => requestIdle(() => this.history.save()), 300);
@@ -74,7 +80,7 @@ class Page implements Studio, Listener {
     this.presets = new Presets(this);
     this.vary = new Vary(by_id('grid'), this);
     this.time = new Time(this, () => this.show());
-    this.out = new Out(this, (choices) => this.change({ ...nothing, ...choices }));
+    this.out = new Out(this, this.knobs, (choices) => this.change({ ...nothing, ...choices }));
     this.place = new Place(by_id<HTMLFormElement>('place'), this);
     this.tabs = new Tabs(by_id('tabs'), by_id('panels'), [
       { id: 'text', label: 'Text', content: by_id('text') },
@@ -109,8 +115,8 @@ class Page implements Studio, Listener {
     this.editor.select(from, to);
   }
 
-  say(text: string): void {
-    this.status.say(text);
+  say(text: string, offer?: Offer): void {
+    this.status.say(text, offer);
   }
 
   private bind(): void {
@@ -183,11 +189,17 @@ class Page implements Studio, Listener {
   }
 
   private show(): void {
-    this.session.show({ ...this.history.now, film: this.time.shown_film }, this.size);
+    const { now } = this.history, film = this.time.shown_film;
+    if (!film) this.film_view = null;
+    // Beside the tab Time the view of the film stays as it is: a knob need not frame all moments anew, and what Save writes has it.
+    const is_held = this.film_view !== null && this.tabs.selected !== 'time' && now.at === null && now.zoom === null;
+    this.frames_film = film !== null && !is_held && now.camera === null && now.at === null && now.zoom === null;
+    this.session.show({ ...now, ...(is_held ? { camera: now.camera ?? this.film_view, film: null } : { film }) }, this.size);
     this.tell_done();
   }
 
   private tab(id: string): void {
+    if (this.film_view) this.show();
     this.maps.show(id === 'maps');
     this.digraph.show(id === 'maps');
     this.vary.show(id === 'vary');
@@ -208,13 +220,16 @@ class Page implements Studio, Listener {
     by_id<HTMLSelectElement>('engine').value = now.engine ?? this.hello?.engines[0] ?? 'native';
     document.title = `${now.name} – graftal studio`;
     if (why === 'history') this.view.forget_ahead();
+    const seen = [now.camera, now.at, now.zoom];
+    if (seen.some((part, i) => part !== this.seen[i])) this.picture.forget_sharp();
+    this.seen = seen;
     this.editor.show(now.text);
     this.show();
     this.knobs.show();
     this.time.show();
     this.place.show();
     this.maps.draw();
-    this.point.draw();
+    this.point.changed();
     this.vary.changed();
     if (this.tabs.selected === 'out') this.show_command();
     this.save();
@@ -256,11 +271,14 @@ class Page implements Studio, Listener {
     if (message.number !== this.session.number || this.session.holds) return;
     this.editor.show_findings(message.findings.filter(({ file }) => !file || file === this.history.now.name));
     this.status.findings(message.findings);
+    if (message.findings.some(({ severity }) => severity === 'error')) this.picture.stay(message.number);
   }
 
   model_came(message: Model): void {
     this.model = message;
     if (message.number !== this.session.number || this.session.holds) return;
+    if (this.frames_film) this.film_view = message.camera;
+    this.view.model_came();
     this.knobs.model_came();
     this.time.model_came();
     this.maps.model_came();
@@ -270,14 +288,15 @@ class Page implements Studio, Listener {
 
   progress(message: Progress): void {
     if (message.number >= first_id) {
-      this.say(`Working on the file: ${Math.round(100 * (message.share ?? 0))} %`);
-      this.time.film.progress(message.number, message.share ?? 0);
+      if (this.time.film.is_film(message.number)) this.time.film.progress(message.share ?? 0);
+      else this.say(`Working on the file: ${Math.round(100 * (message.share ?? 0))} %`);
     } else if (message.number === this.session.number) this.status.progress(message);
   }
 
   pass(message: Pass): void {
     if (message.number !== this.session.number) return;
     this.status.pass(message);
+    this.picture.pass(message.number, message.samples);
     if (message.done) this.complete = message.number;
     this.tell_done();
   }

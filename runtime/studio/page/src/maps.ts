@@ -1,14 +1,14 @@
-// The maps of the model as boxes over the picture, with handles: the box moves, a corner scales, an edge stretches and
-// shears, the knob turns. The text follows by the ask `map`.
+// The maps of the model as boxes over the picture, with handles: the box moves, a corner scales, a side stretches and shears, the
+// round knob turns about the foot. The text follows by the ask `map`.
 import { element, draggable, svg, type Drag } from './dom';
 import { covers_of, reachable, type Place } from './reach';
 import { latest, type Studio } from './studio';
 import type { Box, Camera, Edit, Matrix, ModelMap, Vec3 } from './protocol';
-import { about, add, column, compose, corner, cross, dot, dragged, length, map_point, matrix_of, middle, projected, subtract, times, turned, unit, units_of_pixel, view_of } from './vectors';
+import { about, add, column, compose, corner, dot, dragged, edge_towards, flat_axis, hull_of, length, map_point, matrix_of, middle, projected, subtract, times, turned, unit, units_of_pixel, view_of } from './vectors';
 
 /** A model may have thousands of maps: the page stays quick, and shows the first. */
 const most_shown = 64;
-const handle_px = 7, stem_px = 26, double_click_ms = 400;
+const handle_px = 7, knob_px = 11, stem_px = 30, double_click_ms = 400;
 const hues = [212, 28, 145, 275, 350, 60, 185, 320];
 
 interface Wish {
@@ -25,6 +25,8 @@ export class Maps {
   private readonly refused = new Map<string, string>();
   private chosen: string | null = null;
   private dragging = false;
+  /** The way in which the knob's stem goes; -1: there is room for none. */
+  private side: number | null = null;
   private clicked: { name: string; ms: number } | null = null;
   private readonly ask: (wish: Wish) => void;
 
@@ -101,7 +103,7 @@ export class Maps {
     }));
     if (more > 0) this.list.append(element('li', { class: 'note' }, `and ${more} more`));
     if (!maps.length) this.list.append(element('li', { class: 'note' }, 'This model has no maps. Models of the language .rifs have them.'));
-    else if (!zoomed) this.list.append(element('li', { class: 'note' }, 'Drag a box to move it, a corner to scale it, its round knob to turn it.'));
+    else if (!zoomed) this.list.append(element('li', { class: 'note' }, 'Drag a box to move it, a square to scale it, a diamond to stretch it, the round knob to turn it about the cross.'));
     if (maps.length && zoomed) this.list.append(element('li', { class: 'note' }, 'The boxes show in the whole view: press 0 on the picture.'));
     if (focus) this.list.querySelector<HTMLElement>(`[data-listed="${CSS.escape(focus)}"]`)?.focus();
   }
@@ -144,8 +146,8 @@ export class Maps {
 
   private handles(map: ModelMap, index: number, camera: Camera, flat: number | null): SVGGElement {
     const { width_px, height_px } = this.studio.size, matrix = this.matrix_of(map), { box } = map, scale = this.px_scale();
-    const covers = covers_of(this.overlay, ['tools', 'place', 'status', 'picked', 'stale'], scale);
-    const reach = (place: Place) => reachable(place, { left: 0, top: 0, right: width_px, bottom: height_px }, covers, handle_px * scale);
+    const covers = covers_of(this.overlay, ['tools', 'foot', 'picked', 'stale'], scale);
+    const reach = (place: Place, radius_px = handle_px) => reachable(place, { left: 0, top: 0, right: width_px, bottom: height_px }, covers, radius_px * scale);
     const at = (point: Vec3) => projected(camera, width_px, height_px, map_point(matrix, point));
     const group = svg('g', { 'data-of': map.name, class: `handles${this.refused.has(map.name) ? ' bad' : ''}`, style: `--hue:${hues[index % hues.length]}` });
     if (!map.movable) return group;
@@ -155,7 +157,10 @@ export class Maps {
         const point = middle(box);
         point[axis] = (side ? box.most : box.least)[axis]!;
         const seen = at(point), place = seen && reach(seen);
-        if (place) group.append(svg('circle', { class: 'handle edge', 'data-handle': `edge ${axis} ${side}`, cx: place[0], cy: place[1], r: 5 * scale }));
+        if (!place) continue;
+        const [x, y] = place, r = 6.5 * scale;
+        group.append(svg('path', { class: 'handle edge', 'data-handle': `edge ${axis} ${side}`, d: `M${x - r} ${y}L${x} ${y - r}L${x + r} ${y}L${x} ${y + r}Z` },
+          svg('title', {}, 'Stretch and shear')));
       }
     }
     for (const [bit, seen] of corners) {
@@ -163,23 +168,41 @@ export class Maps {
       const place = reach(seen);
       group.append(svg('rect', {
         class: 'handle corner', 'data-handle': `corner ${bit}`, x: place[0] - 5.5 * scale, y: place[1] - 5.5 * scale, width: 11 * scale, height: 11 * scale,
-      }));
+      }, svg('title', {}, 'Scale')));
     }
-    const seen = corners.map(([, place]) => place).filter((p): p is [number, number] => p !== null), centre = at(middle(box));
-    if (!seen.length || !centre) return group;
-    // The knob stands above the box, or else where there is room.
-    const [x, y] = centre, stem = stem_px * scale, xs = seen.map(([px]) => px), ys = seen.map(([, py]) => py);
-    const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    const stems: [Place, Place][] = [
-      [[x, top], [x, top - stem]], [[x, bottom], [x, bottom + stem]], [[right, y], [right + stem, y]], [[left, y], [left - stem, y]],
-    ];
-    const there = ([px, py]: Place) => reach([px, py]).every((value, i) => value === [px, py][i]);
-    const [foot, knob] = stems.find(([, end]) => there(end)) ?? [reach(centre), reach([reach(centre)[0], reach(centre)[1] - stem])];
+    const hull = hull_of(corners.map(([, place]) => place).filter((p): p is Place => p !== null)), centre = at(middle(box));
+    if (!hull.length || !centre) return group;
+    const pivot = at(foot_of(box));
+    if (pivot) group.append(svg('path', { class: 'pivot', d: cross_at(pivot, 6 * scale) }));
+    const [foot, knob] = this.stem(map, camera, centre, hull, (place) => reach(place, knob_px));
+    const [x, y] = knob, r = 4.5 * scale;
     group.append(
       svg('path', { class: 'stem', d: `M${foot.join(' ')}L${knob.join(' ')}` }),
-      svg('circle', { class: 'handle turn', 'data-handle': 'turn', cx: knob[0], cy: knob[1], r: 6 * scale }),
+      svg('circle', { class: 'handle turn', 'data-handle': 'turn', cx: x, cy: y, r: 9 * scale },
+        svg('title', {}, 'Turn about the cross; with Shift by steps of 15°, with Alt about the middle')),
+      svg('path', { class: 'arc', d: `M${x + r} ${y}A${r} ${r} 0 1 1 ${x} ${y - r}m${-r / 2} ${-r / 2}l${r / 2} ${r / 2}l${-r / 2} ${r / 2}` }),
     );
     return group;
+  }
+
+  /** Where the stem of the knob begins, on the outline of the box, and where it ends: above the top of the map, or else where there is room. */
+  private stem(map: ModelMap, camera: Camera, centre: Place, hull: Place[], reach: (place: Place) => Place): [Place, Place] {
+    const { width_px, height_px } = this.studio.size, matrix = this.matrix_of(map), stem = stem_px * this.px_scale();
+    const top = middle(map.box);
+    top[1] = map.box.most[1];
+    const seen = projected(camera, width_px, height_px, map_point(matrix, top)) ?? [centre[0], centre[1] - 1];
+    const [x, y] = [seen[0] - centre[0], seen[1] - centre[1]], far = Math.hypot(x, y);
+    const up: Place = far > 1e-6 ? [x / far, y / far] : [0, -1];
+    const ways: Place[] = [up, [-up[0], -up[1]], [-up[1], up[0]], [up[1], -up[0]]];
+    const stems = ways.map((way): [Place, Place] => {
+      const foot = edge_towards(hull, centre, way);
+      return [foot, [foot[0] + stem * way[0], foot[1] + stem * way[1]]];
+    });
+    const found = stems.findIndex(([, end]) => reach(end).every((value, i) => value === end[i]));
+    // Under the hand the knob stays on its side.
+    if (this.side === null || !this.dragging) this.side = found;
+    const near = reach(centre);
+    return stems[this.side] ?? [near, reach([near[0], near[1] - stem])];
   }
 
   /** Pixels of the picture in one of the screen. */
@@ -206,7 +229,7 @@ export class Maps {
     const normal = flat === null ? view_of(camera).into : unit([Number(flat === 0), Number(flat === 1), Number(flat === 2)]);
     const [kind, first, second] = handle.split(' ');
     const centre = map_point(start, middle(map.box));
-    const centre_px = projected(camera, width_px, height_px, centre);
+    const foot = map_point(start, foot_of(map.box));
     const bounds = this.overlay.getBoundingClientRect();
     const place = (one: PointerEvent): [number, number] => [(one.clientX - bounds.left) * scale, (one.clientY - bounds.top) * scale];
     const down = place(event);
@@ -217,12 +240,14 @@ export class Maps {
         let by: Matrix;
         if (kind === 'move') {
           by = matrix_of([1, 0, 0], [0, 1, 0], [0, 0, 1], subtract(drag_from(centre), centre));
-        } else if (kind === 'turn' && centre_px) {
-          const angle = (p: [number, number]) => Math.atan2(-(p[1] - centre_px[1]), p[0] - centre_px[0]);
+        } else if (kind === 'turn') {
+          const pivot = now.altKey ? centre : foot, seen = projected(camera, width_px, height_px, pivot);
+          if (!seen) return;
+          const angle = (p: Place) => Math.atan2(-(p[1] - seen[1]), p[0] - seen[0]);
           const seen_from_front = dot(normal, view_of(camera).into) < 0 ? 1 : -1;
           let turn_rad = angle(to) - angle(down);
           if (now.shiftKey) turn_rad = (Math.round((turn_rad * 180) / Math.PI / 15) * 15 * Math.PI) / 180;
-          by = about(centre, (d) => turned(d, normal, turn_rad * seen_from_front));
+          by = about(pivot, (d) => turned(d, normal, turn_rad * seen_from_front));
         } else if (kind === 'corner') {
           // The corner across stays; in space that is the middle, for the one across may lie behind.
           const bit = Number(first), held = map_point(start, corner(map.box, bit));
@@ -285,7 +310,7 @@ export class Maps {
       const moved = dragged(camera, size.width_px, centre, arrow[0] * step, arrow[1] * step, flat === null ? undefined : normal);
       by = matrix_of([1, 0, 0], [0, 1, 0], [0, 0, 1], subtract(moved, centre));
     } else if (arrow[0]) {
-      by = about(centre, (d) => turned(d, normal, (-arrow[0] * 5 * Math.PI) / 180));
+      by = about(map_point(start, foot_of(map.box)), (d) => turned(d, normal, (-arrow[0] * 5 * Math.PI) / 180));
     } else {
       by = about(centre, (d) => times(d, arrow[1] < 0 ? 1.05 : 1 / 1.05));
     }
@@ -324,33 +349,16 @@ function corner_bits(flat: number | null): number[] {
   return [0, 1, 2, 3, 4, 5, 6, 7].filter((bit) => flat === null || !(bit & (1 << flat)));
 }
 
-/** The axis along which the model has no depth; null: it is a solid. */
-export function flat_axis(box: Box | null): number | null {
-  if (!box) return null;
-  const extents = subtract(box.most, box.least), most = Math.max(...extents);
-  for (const axis of [2, 0, 1]) if (extents[axis]! <= 1e-6 * most) return axis;
-  return null;
-}
-
 function plain_share(contraction: number): string {
   return `${(100 * contraction).toFixed(contraction < 0.1 ? 1 : 0)} %`;
 }
 
-/** The convex hull of points, in order. */
-export function hull_of(points: [number, number][]): [number, number][] {
-  const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
-  const half = (from: [number, number][]) => {
-    const kept: [number, number][] = [];
-    for (const p of from) {
-      while (kept.length > 1) {
-        const [a, b] = [kept.at(-2)!, kept.at(-1)!];
-        if (cross([b[0] - a[0], b[1] - a[1], 0], [p[0] - a[0], p[1] - a[1], 0])[2] > 0) break;
-        kept.pop();
-      }
-      kept.push(p);
-    }
-    return kept.slice(0, -1);
-  };
-  return length(subtract([...(sorted[0] ?? [0, 0]), 0] as Vec3, [...(sorted.at(-1) ?? [0, 0]), 0] as Vec3)) === 0
-    ? sorted.slice(0, 1) : [...half(sorted), ...half(sorted.reverse())];
+/** What a map turns about, in the frame below it: the origin, on which a frond stands, or the middle of a box that lies elsewhere. */
+function foot_of(box: Box): Vec3 {
+  const slack = 1e-3 * length(subtract(box.most, box.least));
+  return [0, 1, 2].every((axis) => box.least[axis]! <= slack && box.most[axis]! >= -slack) ? [0, 0, 0] : middle(box);
+}
+
+function cross_at([x, y]: Place, r: number): string {
+  return `M${x - r} ${y}H${x + r}M${x} ${y - r}V${y + r}`;
 }

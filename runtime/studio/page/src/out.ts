@@ -2,7 +2,8 @@
 import { by_id, element } from './dom';
 import { choices_of, fragment_of } from './link';
 import { inflate, type Choices, type SentFile } from './protocol';
-import type { Studio } from './studio';
+import type { Knobs, Unwritten } from './knobs';
+import type { Offer, Studio } from './studio';
 
 export class Out {
   readonly element = element('div', {});
@@ -15,7 +16,13 @@ export class Out {
   private readonly command = element('pre', { tabindex: 0, role: 'region', 'aria-label': 'Command line' });
   private readonly path = element('input', { type: 'text', id: 'path', placeholder: 'name.png', 'aria-label': 'Name of the picture file', spellcheck: 'false' });
 
-  constructor(private readonly studio: Studio, private readonly open: (choices: Partial<Choices>) => void) {
+  /** Which knobs the text does not have. */
+  private readonly unwritten = element('p', { class: 'line note', id: 'unwritten' });
+
+  constructor(
+    private readonly studio: Studio, private readonly knobs: Pick<Knobs, 'unwritten' | 'write'>,
+    private readonly open: (choices: Partial<Choices>) => void,
+  ) {
     const pasted = element('input', { type: 'text', id: 'pasted', 'aria-label': 'Link to open', placeholder: 'paste a link here' });
     const link_form = element('form', { class: 'line' }, pasted, element('button', { class: 'quiet' }, 'Open'));
     link_form.onsubmit = async (event) => {
@@ -37,9 +44,10 @@ export class Out {
     this.element.append(
       element('h2', {}, 'Text'),
       element('div', { class: 'line' },
-        this.button('save-text', 'Save text', () => this.save_text()),
-        this.button('download-text', 'Download text', () => this.download_text()),
+        this.button('save-text', 'Save text', () => this.save_text(), 'Writes the file of the model, in the folder of the studio'),
+        this.button('download-text', 'Download text', () => this.download_text(), 'Has the browser save a copy'),
         this.button('open-file', 'Open a file', () => file.click()), file),
+      this.unwritten,
       element('h2', {}, 'Picture'),
       element('div', { class: 'line', id: 'picture-size' }, this.width, ' × ', this.height, size(1), size(2), size(4)),
       element('div', { class: 'line' }, this.picture_kind, this.button('save-picture', 'Save picture', () => this.save_picture())),
@@ -68,6 +76,7 @@ export class Out {
 
   async show(): Promise<void> {
     if (!this.width.value) this.size(1);
+    this.show_unwritten();
     try {
       const { command } = await this.studio.session.ask('command');
       this.command.textContent = String(command);
@@ -76,17 +85,33 @@ export class Out {
     }
   }
 
+  private show_unwritten(): void {
+    const left = this.knobs.unwritten(), names = writable(left);
+    this.unwritten.hidden = left.length === 0;
+    const write = element('button', { type: 'button', class: 'small', onclick: () => this.knobs.write(names) }, 'Write into the text');
+    this.unwritten.replaceChildren(`The text does not have: ${said_of(left)}.`, ...(names.length ? [write] : []));
+  }
+
   /** Writes the text where the model came from; a page without a folder gives it to the browser. */
   async save_text(): Promise<void> {
     const { name } = this.studio.history.now;
-    if (this.studio.hello?.home === 'program') await this.write({ path: name });
-    else this.download_text();
+    if (this.studio.hello?.home !== 'program') return this.download_text();
+    const path = await this.write({ path: name });
+    if (path) this.say_saved(path);
+  }
+
+  /** Says that the text is saved, and what of the picture is not in it. */
+  private say_saved(name: string): void {
+    const left = this.knobs.unwritten(), names = writable(left);
+    const offer: Offer = { label: 'Write and save again', act: () => this.knobs.write(names, () => void this.save_text()) };
+    if (!left.length) this.studio.say(`Saved ${name}.`);
+    else this.studio.say(`Saved ${name}, without ${said_of(left)}: the text does not have that.`, names.length ? offer : undefined);
   }
 
   /** Has the program draw the picture at its size; without a program the one that is shown is saved. */
   private async save_picture(): Promise<void> {
     const size = { width: Number(this.width.value), height: Number(this.height.value) };
-    if (this.studio.hello?.home === 'program') return this.write({ suffix: this.picture_kind.value, ...size });
+    if (this.studio.hello?.home === 'program') return void (await this.write({ suffix: this.picture_kind.value, ...size }));
     const shown = await new Promise<Blob | null>((resolve) => by_id<HTMLCanvasElement>('picture').toBlob(resolve));
     const name = this.studio.history.now.name.replace(/^.*[\\/]/, '').replace(/\.\w+$/, '');
     if (shown) this.give(`${name}.png`, new Uint8Array(await shown.arrayBuffer()));
@@ -100,7 +125,9 @@ export class Out {
 
   private download_text(): void {
     const { name, text } = this.studio.history.now;
-    this.give(name.replace(/^.*[\\/]/, ''), new TextEncoder().encode(text));
+    const file = name.replace(/^.*[\\/]/, '');
+    this.give(file, new TextEncoder().encode(text));
+    this.say_saved(file);
   }
 
   /** The address of this page with the model in it, without the secret that the program gave the page. */
@@ -129,9 +156,9 @@ export class Out {
     this.height.value = String(height_px * times);
   }
 
-  private button(id: string, label: string, act: () => unknown): HTMLButtonElement {
+  private button(id: string, label: string, act: () => unknown, title?: string): HTMLButtonElement {
     const button = element('button', {
-      type: 'button', class: 'quiet', id,
+      type: 'button', class: 'quiet', id, title,
       onclick: async () => {
         button.disabled = true;
         try {
@@ -146,13 +173,16 @@ export class Out {
     return button;
   }
 
-  private async write(fields: object): Promise<void> {
+  /** Gives the path of a file that lies in the folder; null: it went to the browser, or was not made. */
+  private async write(fields: object): Promise<string | null> {
     this.studio.say('Working on the file…');
     try {
       const { path } = await this.studio.session.ask('write', fields);
       if (path) this.studio.say(`Saved ${String(path)}.`);
+      return path ? String(path) : null;
     } catch (error) {
       this.studio.say((error as Error).message);
+      return null;
     }
   }
 
@@ -170,4 +200,11 @@ export class Out {
       this.studio.say(done ? `${what} is in the clipboard.${more}` : 'The browser does not let the page copy.');
     }
   }
+}
+
+const writable = (left: Unwritten[]): string[] => left.filter(({ can_write }) => can_write).map(({ name }) => name);
+
+function said_of(left: Unwritten[]): string {
+  const most_named = 5, more = left.length - most_named;
+  return left.slice(0, most_named).map(({ says }) => says).join(', ') + (more > 0 ? ` and ${more} more` : '');
 }

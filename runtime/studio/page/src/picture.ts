@@ -1,4 +1,5 @@
 // The canvas. Tiles of a new picture appear together once they cover it, so that the last one stays until then.
+import { element } from './dom';
 import { inflate, type Tile } from './protocol';
 import type { Size } from './session';
 
@@ -12,6 +13,9 @@ interface Ready {
   samples: Uint8Array | null;
 }
 
+/** A picture of so many samples a pixel is sharp. */
+const sharp_samples = 1;
+
 /** The canvas is hidden until it shows a picture. */
 export class Picture {
   /** Number of the state whose picture is shown; 0: none yet. */
@@ -24,6 +28,10 @@ export class Picture {
   /** Pixels a sample of the coarse pass that comes in; 0: none. */
   private coarse_pass = 0;
   private painting = false;
+  /** The samples a pixel of the picture that is shown, as far as the session told. */
+  private samples = 0;
+  /** The last sharp picture, where the one that is shown is not. */
+  private sharp: HTMLCanvasElement | null = null;
 
   constructor(readonly canvas: HTMLCanvasElement, private readonly painted: (number: number) => void) {
     this.context = canvas.getContext('2d', { alpha: false })!;
@@ -83,6 +91,26 @@ export class Picture {
     );
   }
 
+  pass(number: number, samples: number): void {
+    if (number === this.shown) this.samples = samples;
+  }
+
+  /** The view is another: no picture of before is of it. */
+  forget_sharp(): void {
+    this.sharp = null;
+    this.samples = 0;
+  }
+
+  /** The state of this number has no picture: the last good one stays, or comes back where only a rough one followed it. */
+  stay(number: number): void {
+    this.queue = [];
+    if (number <= this.shown || this.canvas.hidden) return;
+    this.shown = number;
+    if (!this.sharp || this.samples >= sharp_samples) return;
+    this.context.drawImage(this.sharp, 0, 0, this.canvas.width, this.canvas.height);
+    this.samples = sharp_samples;
+  }
+
   /** Nothing waits to be painted. */
   get idle(): boolean {
     return this.queue.length === 0;
@@ -139,15 +167,14 @@ export class Picture {
   }
 
   private begin(number: number, { width_px, height_px }: Size): void {
+    const { canvas } = this;
+    if (this.samples >= sharp_samples) this.sharp = copy_of(canvas);
+    this.samples = 0;
     this.shown = number;
     this.coarse_pass = 0;
-    const { canvas } = this;
     canvas.hidden = false;
     if (canvas.width === width_px && canvas.height === height_px) return;
-    const old = document.createElement('canvas');
-    old.width = canvas.width;
-    old.height = canvas.height;
-    old.getContext('2d')!.drawImage(canvas, 0, 0);
+    const old = copy_of(canvas);
     canvas.width = width_px;
     canvas.height = height_px;
     this.context.drawImage(old, 0, 0, width_px, height_px);
@@ -171,18 +198,26 @@ export class Picture {
     return context;
   }
 
-  /** Enlarges coarse samples where these tiles are, without seams between them. */
+  /** Enlarges coarse samples where these tiles are and a little beyond: what was enlarged before beside them knew no
+   * neighbour, and would leave a seam. */
   private smooth(tiles: Tile[]): void {
     const { context } = this, pixels = tiles[0]!.coarse, from = this.coarse.get(pixels)!.canvas;
     context.save();
     context.beginPath();
-    for (const { x, y, width, height } of tiles) context.rect(x, y, width, height);
+    const rim = 2 * pixels;
+    for (const { x, y, width, height } of tiles) context.rect(x - rim, y - rim, width + 2 * rim, height + 2 * rim);
     context.clip();
     context.imageSmoothingEnabled = true;
     context.imageSmoothingQuality = 'high';
     context.drawImage(from, 0, 0, from.width * pixels, from.height * pixels);
     context.restore();
   }
+}
+
+function copy_of(canvas: HTMLCanvasElement): HTMLCanvasElement {
+  const copy = element('canvas', { width: canvas.width, height: canvas.height });
+  copy.getContext('2d')!.drawImage(canvas, 0, 0);
+  return copy;
 }
 
 /** The samples of a tile with full alpha; null where there are fewer than it promises. */

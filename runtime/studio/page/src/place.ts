@@ -28,7 +28,7 @@ export class Place {
     const { at, zoom } = this.studio.history.now, shown = JSON.stringify([at, zoom, this.typing]);
     if (this.typing || shown === this.shown) return;
     this.shown = shown;
-    const parts = at ? at.split('.') : [];
+    const parts = at ? parts_of(at) : [];
     const hidden = Math.max(0, parts.length - most_crumbs);
     const crumb = (label: string, to: string | null, current: boolean) => element('button', {
       type: 'button', class: 'crumb', 'aria-current': current ? 'location' : null,
@@ -57,6 +57,19 @@ export class Place {
     );
     address.select();
   }
+}
+
+/** The steps of an address; those in brackets stay together. */
+function parts_of(address: string): string[] {
+  const parts = [''];
+  let depth = 0;
+  for (const letter of address) {
+    if (letter === '(') ++depth;
+    if (letter === ')') --depth;
+    if (letter === '.' && depth === 0) parts.push('');
+    else parts[parts.length - 1] += letter;
+  }
+  return parts;
 }
 
 export function short_zoom(zoom: string): string {

@@ -1,7 +1,7 @@
 // A click on the picture: the rule that made what is there, its address, and a point that can be pulled.
 import { draggable, element, svg } from './dom';
-import { latest, type Studio } from './studio';
-import type { Edit, Vec3 } from './protocol';
+import { edited, latest, type Studio } from './studio';
+import type { Choices, Edit, Vec3 } from './protocol';
 import { dragged, projected, units_of_pixel } from './vectors';
 
 interface Picked {
@@ -13,8 +13,13 @@ interface Picked {
   part: number[];
 }
 
+/** What a point of the model depends on. */
+type Shape = Pick<Choices, 'name' | 'text' | 'set' | 'steps' | 'time' | 'seed'>;
+
 export class PointTool {
   private picked: Picked | null = null;
+  /** Of what it was picked; of any other model it tells nothing. */
+  private of: Shape | null = null;
   /** Where the point of the model lies, as far as the text follows the hand. */
   private lies: Vec3 = [0, 0, 0];
   /** Where the number begins that a drag of an L-system's part changes; null: the next drag chooses one. */
@@ -31,15 +36,18 @@ export class PointTool {
   }
 
   async pick(x: number, y: number): Promise<void> {
-    const { studio } = this;
+    const { studio } = this, of = studio.history.now;
     if (!studio.model) return;
     try {
       const answer = await studio.session.ask('pick', { x, y });
-      if (!answer['point']) {
+      if (!answer['point'] || !is_same(of, studio.history.now)) {
         this.picked = null;
       } else {
         const { point, address, object, from, to, path, part } = answer as unknown as Picked & { from?: number; to?: number };
         this.picked = { point, address, object, path: path ?? [], part: part ?? [] };
+        this.of = of;
+        // The card lies where the dot does not, and stays there.
+        this.card.classList.toggle('high', y > studio.size.height_px / 2);
         if (typeof from === 'number' && typeof to === 'number') studio.select(from, to);
       }
     } catch (error) {
@@ -49,7 +57,13 @@ export class PointTool {
     this.draw();
   }
 
-  forget(): void {
+  /** Something changed: what was picked goes where it is no longer true. */
+  changed(): void {
+    if (this.of && !is_same(this.of, this.studio.history.now)) this.forget();
+    else this.draw();
+  }
+
+  private forget(): void {
     if (!this.picked) return;
     this.picked = null;
     this.draw();
@@ -78,8 +92,6 @@ export class PointTool {
     const { width } = this.overlay.getBoundingClientRect(), scale = width > 0 ? size.width_px / width : 1;
     const old = this.overlay.querySelector<SVGCircleElement>('circle');
     const marker = old ?? this.marker();
-    // The card lies where the dot does not.
-    this.card.classList.toggle('high', place[1] > size.height_px / 2);
     marker.setAttribute('cx', String(place[0]));
     marker.setAttribute('cy', String(place[1]));
     marker.setAttribute('r', String(7 * scale));
@@ -145,6 +157,7 @@ export class PointTool {
         return;
       }
       const edits = answer['edits'] as Edit[];
+      this.of = { ...this.of!, text: edited(before, edits) };
       studio.edit(edits, 'pull');
       this.lies = (answer['point'] as Vec3 | undefined) ?? to;
       if (!this.is_lsys) return;
@@ -159,6 +172,10 @@ export class PointTool {
     }
     this.settle();
   }
+}
+
+function is_same(a: Shape, b: Shape): boolean {
+  return a.name === b.name && a.text === b.text && a.set === b.set && a.steps === b.steps && a.time === b.time && a.seed === b.seed;
 }
 
 /** Parts of an L-system are named by their symbols and sizes: A_9_2 is an A. Equal ones one after the other are counted. */

@@ -109,6 +109,9 @@ export interface Model {
   camera: Camera;
   box: Box | null;
   stats: Record<string, unknown> | string | null;
+  /** Whether another seed, and other steps, may change it; undefined: nobody knows. */
+  chance?: boolean;
+  grows?: boolean;
   maps: ModelMap[];
   digraphs?: ControlDigraph[];
 }
@@ -128,6 +131,8 @@ export interface Pass {
   seconds_left: number | null;
   noise_255: number | null;
   done: boolean;
+  /** Of the last pass that the work allowed has ended: what all of it would take. */
+  whole_seconds?: number | null;
 }
 
 export interface Answer {

@@ -21,7 +21,7 @@ export class Slider {
   constructor(private readonly options: SliderOptions) {
     this.exact = this.shown = options.value;
     this.range = element('input', { type: 'range', 'aria-label': options.label });
-    this.number = element('button', { type: 'button', class: 'number', title: 'Double-click to type a number' });
+    this.number = element('button', { type: 'button', class: 'number' });
     this.range.addEventListener('pointerdown', (event) => this.drag(event));
     this.range.addEventListener('keydown', (event) => this.key(event));
     // Assistive technology sets values without a pointer or key.
@@ -46,6 +46,7 @@ export class Slider {
     this.range.value = String(value);
     const text = as_it_is ?? plain_number(value);
     this.number.textContent = text;
+    this.number.title = `${as_it_is === undefined ? '' : 'As the model is. '}Double-click to type a number`;
     this.number.setAttribute('aria-label', `${this.options.label}: ${text}. Type a number`);
     this.range.style.setProperty('--share', String((value - this.options.least) / (this.options.most - this.options.least || 1)));
   }

@@ -1,9 +1,9 @@
 // What the page tells in a line: how far the picture is, what is wrong with the text, what just happened.
 import { element } from './dom';
 import type { Finding, Findings, Pass, Progress } from './protocol';
-import type { Studio } from './studio';
+import type { Offer, Studio } from './studio';
 
-const said_ms = 6000;
+const said_ms = 4000, offered_ms = 15_000;
 
 export class Status {
   private timer = 0;
@@ -14,9 +14,11 @@ export class Status {
     private readonly said: HTMLElement, private readonly stale: HTMLElement, private readonly studio: Studio,
   ) {}
 
-  pass({ samples, seconds_left, done }: Pass): void {
+  pass({ samples, seconds_left, done, whole_seconds }: Pass): void {
     const count = samples < 1 ? 'coarse' : `${Number(samples.toPrecision(3))} ${samples === 1 ? 'sample' : 'samples'} a pixel`;
-    this.line.textContent = done || seconds_left === null ? count : `${count}, ${duration(seconds_left)} left`;
+    const left = seconds_left === null ? '' : `, ${duration(seconds_left)} left`;
+    const stopped = whole_seconds ? `, stopped here: a better quality takes about ${duration(whole_seconds)}` : '';
+    this.line.textContent = count + (done ? stopped : left);
     this.share(done ? null : 0, true);
   }
 
@@ -36,14 +38,22 @@ export class Status {
     this.finding.className = first?.severity ?? '';
   }
 
-  say(text: string): void {
-    this.said.textContent = text;
-    this.said.hidden = false;
-    clearTimeout(this.timer);
-    this.timer = setTimeout(() => {
+  say(text: string, offer?: Offer): void {
+    const close = () => {
       this.said.hidden = this.why === null;
       this.said.textContent = this.why;
-    }, said_ms) as unknown as number;
+    };
+    const button = offer && element('button', {
+      type: 'button', class: 'quiet',
+      onclick: () => {
+        close();
+        offer.act();
+      },
+    }, offer.label);
+    this.said.replaceChildren(text, ...(button ? [button] : []));
+    this.said.hidden = false;
+    clearTimeout(this.timer);
+    this.timer = setTimeout(close, offer ? offered_ms : said_ms) as unknown as number;
   }
 
   reach(why: string | null): void {
@@ -62,7 +72,7 @@ export class Status {
   private finding_line(finding: Finding, count: number): HTMLElement {
     const { text } = this.studio.history.now, line = text.slice(0, finding.from).split('\n').length;
     return element('button', { type: 'button', onclick: () => this.studio.select(finding.from, finding.to) },
-      element('strong', {}, `Line ${line}: `), finding.text,
+      finding.file ? element('strong', {}, `Line ${line}: `) : null, finding.text,
       finding.hint ? element('span', { class: 'hint' }, finding.hint) : null,
       count > 1 ? element('span', { class: 'more' }, `${count - 1} more`) : null);
   }

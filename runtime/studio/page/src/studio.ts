@@ -18,8 +18,13 @@ export interface Studio {
   edit(edits: Edit[], key?: string | null): void;
   /** Selects a part of the text, and scrolls to it. */
   select(from: number, to: number): void;
-  /** Tells the person one thing, for some seconds. */
-  say(text: string): void;
+  /** Tells the person one thing, for some seconds; `offer` is a button beside it. */
+  say(text: string, offer?: Offer): void;
+}
+
+export interface Offer {
+  label: string;
+  act(): void;
 }
 
 export function edited(text: string, edits: Edit[]): string {

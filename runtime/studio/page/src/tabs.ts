@@ -10,8 +10,10 @@ export interface Tab {
 export class Tabs {
   selected = '';
   private readonly buttons = new Map<string, HTMLButtonElement>();
+  /** How far each panel was scrolled. */
+  private readonly scrolled_px = new Map<string, number>();
 
-  constructor(list: HTMLElement, panels: HTMLElement, private readonly tabs: Tab[], private readonly changed: (id: string) => void) {
+  constructor(list: HTMLElement, private readonly panels: HTMLElement, private readonly tabs: Tab[], private readonly changed: (id: string) => void) {
     for (const { id, label, content } of tabs) {
       const button = element('button', {
         type: 'button', role: 'tab', id: `tab-${id}`, 'aria-controls': content.id || `panel-${id}`, onclick: () => this.select(id),
@@ -37,6 +39,7 @@ export class Tabs {
   }
 
   select(id: string): void {
+    this.scrolled_px.set(this.selected, this.panels.scrollTop);
     this.selected = id;
     for (const tab of this.tabs) {
       const button = this.buttons.get(tab.id)!, chosen = tab.id === id;
@@ -44,6 +47,7 @@ export class Tabs {
       button.tabIndex = chosen ? 0 : -1;
       tab.content.classList.toggle('chosen', chosen);
     }
+    this.panels.scrollTop = this.scrolled_px.get(id) ?? 0;
     this.changed(id);
   }
 }

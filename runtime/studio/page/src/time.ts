@@ -6,6 +6,9 @@ import type { Studio } from './studio';
 
 type Key = 'time' | 'steps';
 
+/** Seconds as people read them. */
+const tidy = (seconds: number): number => Number(seconds.toFixed(2));
+
 export class Time {
   readonly element: HTMLElement;
   readonly film: Film;
@@ -17,7 +20,6 @@ export class Time {
   /** Where the film stands. */
   private now_seconds = 0;
   private playing = 0;
-  private is_shown = false;
   /** The model for which it was chosen whether the time runs. */
   private chosen_for = '';
 
@@ -43,6 +45,7 @@ export class Time {
     this.key.onchange = () => {
       this.stop();
       this.show();
+      moved();
     };
     this.film = new Film(studio, () => this.course());
     this.element = element('div', {},
@@ -56,6 +59,7 @@ export class Time {
   }
 
   show(): void {
+    this.follow();
     this.slider.show(this.now_seconds, 0, this.seconds);
     this.film.show();
   }
@@ -65,9 +69,9 @@ export class Time {
     const { name } = this.studio.history.now;
     if (this.chosen_for === name) return;
     this.chosen_for = name;
-    const is_lsys = name.toLowerCase().endsWith('.lsys');
-    const steps = this.studio.model?.parameters.find((parameter) => parameter.name === 'steps')?.value;
-    this.runs.checked = is_lsys;
+    const { model } = this.studio, is_lsys = name.toLowerCase().endsWith('.lsys');
+    const steps = model?.parameters.find((parameter) => parameter.name === 'steps')?.value;
+    this.runs.checked = is_lsys && model?.grows !== false;
     if (is_lsys) this.ends.least.value = '1';
     if (steps !== undefined) this.ends.most.value = String(steps);
     this.show();
@@ -75,17 +79,32 @@ export class Time {
   }
 
   tab(is_shown: boolean): void {
-    const was = this.shown_film;
-    this.is_shown = is_shown;
     if (is_shown) this.show();
     else this.stop();
-    if (JSON.stringify(was) !== JSON.stringify(this.shown_film)) this.moved();
   }
 
-  /** The film whose view the picture has: while something moves in it, its moments are framed together. */
+  /** The film of which the picture is a moment: all its moments are framed together, whatever tab is open. */
   get shown_film(): object | null {
-    const moves = this.runs.checked || moving(this.studio.history.now.keys).length > 0;
-    return this.is_shown && moves ? this.film.film() : null;
+    const { now } = this.studio.history;
+    const grows = this.runs.checked && (now.time !== null || (this.key.value === 'steps' && now.steps !== null));
+    return grows || moving(now.keys).length > 0 ? this.film.film() : null;
+  }
+
+  /** The film stands where the picture is, which others may have changed. */
+  private follow(): void {
+    const { model, history: { now } } = this.studio, [least, most] = this.range;
+    if (this.playing || !this.runs.checked) return;
+    const shown = now.time ?? now.steps;
+    if (shown !== null && shown === this.growth_at(this.now_seconds)) return;
+    const whole = model?.parameters.find(({ name }) => name === 'steps')?.value ?? most;
+    const share = ((shown ?? whole) - least) / (most - least);
+    this.now_seconds = tidy(this.seconds * Math.max(0, Math.min(1, share)));
+  }
+
+  /** The time, or the steps, at a moment. */
+  private growth_at(seconds: number): number {
+    const [least, most] = this.range, time = Number((least + ((most - least) * seconds) / this.seconds).toFixed(4));
+    return this.key.value === 'steps' ? Math.max(0, Math.round(time)) : time;
   }
 
   stop(): void {
@@ -116,12 +135,11 @@ export class Time {
 
   /** Shows a moment of the film: the knobs of its key frames, and the time. */
   private put(seconds: number): void {
-    const { now } = this.studio.history, key = this.key.value as Key, [least, most] = this.range;
-    this.now_seconds = Math.max(0, Math.min(this.seconds, seconds));
+    const { now } = this.studio.history, key = this.key.value as Key;
+    this.now_seconds = tidy(Math.max(0, Math.min(this.seconds, seconds)));
     this.slider.show(this.now_seconds, 0, this.seconds);
     const set = { ...now.set, ...values_at(now.keys, this.now_seconds) };
-    const time = Number((least + ((most - least) * this.now_seconds) / this.seconds).toFixed(4));
-    const shown = !this.runs.checked ? now[key] : key === 'steps' ? Math.max(0, Math.round(time)) : time;
+    const shown = this.runs.checked ? this.growth_at(this.now_seconds) : now[key];
     if (now[key] !== shown || JSON.stringify(now.set) !== JSON.stringify(set)) this.studio.change({ [key]: shown, set }, 'time');
   }
 

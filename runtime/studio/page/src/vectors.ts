@@ -53,6 +53,14 @@ export function corner(box: Box, bits: number): Vec3 {
   return [0, 1, 2].map((axis) => (bits & (1 << axis) ? box.most : box.least)[axis]!) as Vec3;
 }
 
+/** The axis along which the model has no depth; null: it is a solid. */
+export function flat_axis(box: Box | null): number | null {
+  if (!box) return null;
+  const extents = subtract(box.most, box.least), most = Math.max(...extents);
+  for (const axis of [2, 0, 1]) if (extents[axis]! <= 1e-6 * most) return axis;
+  return null;
+}
+
 /** Axes of a camera: to the right, up, and into the picture. */
 export interface View {
   right: Vec3;
@@ -95,4 +103,35 @@ export function dragged(camera: Camera, width_px: number, point: Vec3, dx_px: nu
   const slope = dot(ray, normal);
   if (Math.abs(slope) < 0.05) return moved;
   return subtract(moved, times(ray, dot(subtract(moved, point), normal) / slope));
+}
+
+/** The convex hull of points, in order. */
+export function hull_of(points: [number, number][]): [number, number][] {
+  const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const half = (from: [number, number][]) => {
+    const kept: [number, number][] = [];
+    for (const p of from) {
+      while (kept.length > 1) {
+        const [a, b] = [kept.at(-2)!, kept.at(-1)!];
+        if (cross([b[0] - a[0], b[1] - a[1], 0], [p[0] - a[0], p[1] - a[1], 0])[2] > 0) break;
+        kept.pop();
+      }
+      kept.push(p);
+    }
+    return kept.slice(0, -1);
+  };
+  return length(subtract([...(sorted[0] ?? [0, 0]), 0] as Vec3, [...(sorted.at(-1) ?? [0, 0]), 0] as Vec3)) === 0
+    ? sorted.slice(0, 1) : [...half(sorted), ...half(sorted.reverse())];
+}
+
+/** Where a ray from a point inside of a hull meets its outline. */
+export function edge_towards(hull: [number, number][], [x, y]: [number, number], [dx, dy]: [number, number]): [number, number] {
+  let far = 0;
+  hull.forEach(([ax, ay], i) => {
+    const [bx, by] = hull[(i + 1) % hull.length]!, ex = bx - ax, ey = by - ay, slope = dx * ey - dy * ex;
+    if (Math.abs(slope) < 1e-12) return;
+    const along = ((ax - x) * ey - (ay - y) * ex) / slope, share = ((ax - x) * dy - (ay - y) * dx) / slope;
+    if (share >= -1e-9 && share <= 1 + 1e-9) far = Math.max(far, along);
+  });
+  return [x + far * dx, y + far * dy];
 }

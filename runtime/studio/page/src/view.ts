@@ -1,5 +1,8 @@
-// The person's hands on the picture: orbit, pan and dolly by mouse, touch and keys; the wheel zooms without an end.
+// The person's hands on the picture: orbit, pan and dolly by mouse, touch and keys; the wheel zooms without an end. A flat
+// model is panned where others are orbited, and the other way round.
 import { dollied, orbited, panned, tidied } from './camera';
+import { by_id } from './dom';
+import { flat_axis } from './vectors';
 import type { Studio } from './studio';
 import type { Camera } from './protocol';
 
@@ -120,6 +123,16 @@ export class ViewControl {
       ? `translate(${(100 * left) / width_px}%, ${(100 * top) / height_px}%) scale(${scale})` : '';
   }
 
+  private get is_flat(): boolean {
+    return flat_axis(this.studio.model?.box ?? null) !== null;
+  }
+
+  /** Tells what the keys do with this model. */
+  model_came(): void {
+    const [plain, shifted] = this.is_flat ? ['pan', 'orbit'] : ['orbit', 'pan'];
+    by_id('view-keys').textContent = `Arrow keys ${plain}, with Shift they ${shifted}. Plus and minus zoom. Page Up and Page Down move the camera nearer and farther. 0 shows the whole model.`;
+  }
+
   private steer(change: (camera: Camera) => Camera, key: string): void {
     const { camera } = this.studio;
     if (camera) this.studio.change({ camera: tidied(change(camera)) }, key);
@@ -158,7 +171,7 @@ export class ViewControl {
     last.y = event.clientY;
     if (event.ctrlKey || event.metaKey) {
       this.steer((camera) => dollied(camera, Math.exp(-0.01 * dy)), 'camera');
-    } else if (event.shiftKey || event.buttons & 6) {
+    } else if (event.buttons & 6 || event.shiftKey !== this.is_flat) {
       this.steer((camera) => panned(camera, dx, dy, box.width), 'camera');
     } else {
       this.steer((camera) => orbited(camera, dx * turn_rad_of_px, dy * turn_rad_of_px), 'camera');
@@ -176,7 +189,7 @@ export class ViewControl {
       ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
     };
     const arrow = arrows[event.key], { width } = this.view.getBoundingClientRect();
-    if (arrow && event.shiftKey) {
+    if (arrow && event.shiftKey !== this.is_flat) {
       this.steer((camera) => panned(camera, -arrow[0] * key_pan_px, -arrow[1] * key_pan_px, width), 'camera key');
     } else if (arrow) {
       this.steer((camera) => orbited(camera, arrow[0] * key_turn_rad, arrow[1] * key_turn_rad), 'camera key');

@@ -40,11 +40,11 @@ double mean_shadow(const Affine& proxy) {
 }
 
 struct Fitted {
-    CutGraph cut;
+    DetailGraph cut;
     Symmetry symmetry;
     std::uint64_t draws = 0;
 
-    const CutNode& root() const { return cut.nodes[cut.root]; }
+    const DetailNode& root() const { return cut.nodes[cut.root]; }
     double root_shadow() const { return mean_shadow(root().node_from_proxy); }
 };
 
@@ -81,10 +81,10 @@ double mean_union(const Fitted& model, int depth) {
     for (const Vec3& direction : directions) {
         shadow.start(direction, model.root().ball);
         const auto draw = [&](const auto& self, NodeId id, const Affine& place, int levels) -> double {
-            const CutNode& node = model.cut.nodes[id];
+            const DetailNode& node = model.cut.nodes[id];
             if (levels < 0) return shadow.draw_sphere(place * node.node_from_proxy).uncovered;
             double uncovered = 0;
-            for (const CutEdge& edge : node.edges)
+            for (const DetailEdge& edge : node.edges)
                 uncovered += self(self, edge.child, place * edge.node_from_child,
                                   levels - static_cast<int>(edge.levels));
             return uncovered;
@@ -166,7 +166,7 @@ TEST(Coverage, CyclesShareABudget) {
 TEST(Coverage, DrawsAboutAsManyBodiesAsAreAllowed) {
     for (const auto& [cycles, parts] : {std::pair(1, 1), {40, 1}, {1, 40}})
         for (const std::uint64_t most : {std::uint64_t{0}, std::uint64_t{20'000}, std::uint64_t{200'000}}) {
-            CutGraph cut = test::cut_of(cycles_of_toruses(cycles, parts));
+            DetailGraph cut = test::cut_of(cycles_of_toruses(cycles, parts));
             constexpr std::uint64_t one_node = 60'000; // of hundreds of parts, or four bodies each
             EXPECT_LT(fit_proxies(cut, find_symmetry(cut), most), 3 * most + one_node)
                 << cycles << " of " << parts << " by " << most;
@@ -220,7 +220,7 @@ TEST(Coverage, ThePoundSignsProxyIsTwoThirdsOfItsBallAtEveryDepth) {
     const double whole = mean_union(model, 5);
     for (const int depth : {2, 3, 4})
         EXPECT_NEAR(mean_union(model, depth) / whole, 1, 0.015) << depth;
-    for (const CutNode& node : model.cut.nodes) {
+    for (const DetailNode& node : model.cut.nodes) {
         if (node.primitive || !node.cullable || node.name == "pound_sign") continue;
         const double radius = std::sqrt(mean_shadow(node.node_from_proxy) / pi);
         EXPECT_NEAR(radius / node.ball.radius, 0.69, 0.03) << node.name;

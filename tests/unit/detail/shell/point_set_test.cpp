@@ -16,7 +16,7 @@ TEST(PointPaint, LooksTheSameUpAWayAsDownIt) {
     for (int trial = 0; trial < 200; ++trial) {
         std::vector<LookStep> way;
         for (int i = 0; i < 6; ++i) {
-            CutEdge edge;
+            DetailEdge edge;
             if (random() % 2) edge.tint = PathTint(Tint{{unit(), unit(), unit()}, unit()});
             if (random() % 4 == 0) edge.material = random() % materials.size();
             const MeanColour mean{0.5 * Rgb(unit(), unit(), unit()), 0.5 * unit()};

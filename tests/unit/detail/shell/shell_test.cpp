@@ -36,17 +36,17 @@ Graph corners_graph(int dimensions, double share, int copies = 1) {
     return graph;
 }
 
-PreparedCut prepared(const Graph& graph, const DetailOptions& options = {}) {
-    return prepare_cut(graph, strong_components(graph), test::bounds_of(graph), options.preparing());
+PreparedGraph prepared(const Graph& graph, const DetailOptions& options = {}) {
+    return prepare_graph(graph, strong_components(graph), test::bounds_of(graph), options.preparing());
 }
 
-double detail_for(const CutGraph& cut, double cells_across) {
+double detail_for(const DetailGraph& cut, double cells_across) {
     return cells_across / (2 * cut.nodes[cut.root].ball.radius);
 }
 
 TEST(Shell, PointsAreTrueAndNoTruePointOutsideIsFar) {
-    const PreparedCut ready = prepared(corners_graph(3, 0.7));
-    const CutGraph& cut = ready.cut;
+    const PreparedGraph ready = prepared(corners_graph(3, 0.7));
+    const DetailGraph& cut = ready.cut;
     const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 120), {});
     ASSERT_FALSE(set.points.empty());
     EXPECT_FALSE(set.flat);
@@ -79,8 +79,8 @@ TEST(Shell, PointsAreTrueAndNoTruePointOutsideIsFar) {
 }
 
 TEST(Shell, WhatNobodySeesIsLeftOut) {
-    const PreparedCut ready = prepared(corners_graph(3, 0.7));
-    const CutGraph& cut = ready.cut;
+    const PreparedGraph ready = prepared(corners_graph(3, 0.7));
+    const DetailGraph& cut = ready.cut;
     const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 200), {});
     ASSERT_FALSE(set.points.empty());
     const double side_cells = 2 / set.cell;
@@ -90,8 +90,8 @@ TEST(Shell, WhatNobodySeesIsLeftOut) {
 
 TEST(Shell, WorkGrowsWithCellsAndNotWithCopies) {
     for (const double share : {0.6, 0.8, 0.9}) {
-        const PreparedCut ready = prepared(corners_graph(2, share));
-        const CutGraph& cut = ready.cut;
+        const PreparedGraph ready = prepared(corners_graph(2, share));
+        const DetailGraph& cut = ready.cut;
         const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 300), {});
         ASSERT_FALSE(set.points.empty());
         EXPECT_TRUE(set.flat);
@@ -104,8 +104,8 @@ TEST(Shell, WorkGrowsWithCellsAndNotWithCopies) {
 }
 
 TEST(Shell, LimitsMakeItCoarserAndNotLess) {
-    const PreparedCut ready = prepared(corners_graph(2, 0.8));
-    const CutGraph& cut = ready.cut;
+    const PreparedGraph ready = prepared(corners_graph(2, 0.8));
+    const DetailGraph& cut = ready.cut;
     PointLimits limits;
     limits.points = 20'000;
     const auto set = point_set(cut, cut.root, unlimited_steps, detail_for(cut, 2000), limits);
@@ -117,8 +117,8 @@ TEST(Shell, LimitsMakeItCoarserAndNotLess) {
 
 /// Where a first look took too much there was nothing, and then a shell without a limit.
 TEST(Shell, LittleWorkMakesItCoarserAndNotNothing) {
-    const PreparedCut ready = prepared(corners_graph(3, 0.9));
-    const CutGraph& cut = ready.cut;
+    const PreparedGraph ready = prepared(corners_graph(3, 0.9));
+    const DetailGraph& cut = ready.cut;
     for (const std::uint64_t work : {1'000'000ull, 100'000ull, 20'000ull}) {
         PointLimits limits;
         limits.work = work;
@@ -140,16 +140,16 @@ TEST(Shell, WhatLeadsToAPrimitiveIsSolid) {
     top.instances.push_back({dust, {}, {}, {}, {}});
     top.instances.push_back({ball, Affine::scale(Vec3(0.1)), {}, {}, {}});
     graph.root = graph.add(std::move(top));
-    const PreparedCut ready = prepared(graph);
+    const PreparedGraph ready = prepared(graph);
     EXPECT_TRUE(ready.cut.nodes[ready.cut.root].solid);
-    const auto found = std::ranges::find(ready.cut.nodes, "dust", &CutNode::name);
+    const auto found = std::ranges::find(ready.cut.nodes, "dust", &DetailNode::name);
     ASSERT_NE(found, ready.cut.nodes.end());
     EXPECT_FALSE(found->solid);
 }
 
 TEST(Shell, IsAClosedSurface) {
-    const PreparedCut ready = prepared(corners_graph(3, 0.65));
-    const CutGraph& cut = ready.cut;
+    const PreparedGraph ready = prepared(corners_graph(3, 0.65));
+    const DetailGraph& cut = ready.cut;
     ShellRequest request;
     request.node = cut.root;
     request.detail_per_unit = detail_for(cut, 60);
@@ -177,8 +177,8 @@ TEST(Shell, IsAClosedSurface) {
 /// Dust has a dozen times as many triangles a point as a surface: there was nothing, after all the work.
 TEST(Shell, TooManyTrianglesMakeItCoarserAndNotNothing) {
     for (const double share : {0.2, 0.35, 0.45}) {
-        const PreparedCut ready = prepared(corners_graph(3, share));
-        const CutGraph& cut = ready.cut;
+        const PreparedGraph ready = prepared(corners_graph(3, share));
+        const DetailGraph& cut = ready.cut;
         ShellRequest request;
         request.node = cut.root;
         request.detail_per_unit = detail_for(cut, 1000);
@@ -201,7 +201,7 @@ TEST(Shell, CrowdsAreToldFromSetsThatOnlyFillSpace) {
         bool crowded;
     } cases[] = {{2, 0.5, false}, {3, 0.5, false}, {2, 0.45, false}, {2, 0.75, true}, {3, 0.7, true}};
     for (const auto& c : cases) {
-        const PreparedCut ready = prepared(corners_graph(c.dimensions, c.share));
+        const PreparedGraph ready = prepared(corners_graph(c.dimensions, c.share));
         Weights weights(ready.cut);
         const double unit = detail_for(ready.cut, 500);
         EXPECT_EQ(weights.of({ready.cut.root, unlimited_steps, PieceKind::step_of(unit)}).crowded, c.crowded)
@@ -225,7 +225,7 @@ TEST(Shell, ACrowdSomewhereInsideMakesNoneOfTheWhole) {
         wood.instances.push_back(
             {master, Affine::translate(1000.0 * Vec3(side(random), 0, side(random))), {}, {}, {}});
     graph.root = graph.add(std::move(wood));
-    const PreparedCut ready = prepared(graph);
+    const PreparedGraph ready = prepared(graph);
     Weights weights(ready.cut);
     const PieceKind near{ready.cut.root, unlimited_steps, PieceKind::step_of(detail_for(ready.cut, 1000))};
     EXPECT_TRUE(weights.of(near).crowded) << "its bushes are";
@@ -236,7 +236,7 @@ TEST(Shell, ACrowdSomewhereInsideMakesNoneOfTheWhole) {
     EXPECT_FALSE(sizes.has(1e9));
 }
 
-void expect_what_is_made_anew(ShellStore& store, const CutGraph& cut, double cells_across,
+void expect_what_is_made_anew(ShellStore& store, const DetailGraph& cut, double cells_across,
                               const PointLimits& limits) {
     const double detail = detail_for(cut, cells_across);
     const auto kept = store.points(cut, cut.root, unlimited_steps, detail, limits);
@@ -248,8 +248,8 @@ void expect_what_is_made_anew(ShellStore& store, const CutGraph& cut, double cel
 }
 
 TEST(ShellStore, GivesWhatIsMadeAnewAndMakesItOnce) {
-    const PreparedCut ready = prepared(corners_graph(3, 0.65));
-    const CutGraph& cut = ready.cut;
+    const PreparedGraph ready = prepared(corners_graph(3, 0.65));
+    const DetailGraph& cut = ready.cut;
     ShellStore store;
     const PointLimits limits;
     for (const double across : {60.0, 20.0, 60.0, 20.0})
@@ -259,8 +259,8 @@ TEST(ShellStore, GivesWhatIsMadeAnewAndMakesItOnce) {
 
 /// A native picture that is tried at ten errors asked ten times for one shell that is as fine as it may be.
 TEST(ShellStore, OneGridServesAllThatAskForAFinerOneThanTheLimitsAllow) {
-    const PreparedCut ready = prepared(corners_graph(2, 0.8));
-    const CutGraph& cut = ready.cut;
+    const PreparedGraph ready = prepared(corners_graph(2, 0.8));
+    const DetailGraph& cut = ready.cut;
     ShellStore store;
     PointLimits limits;
     limits.points = 20'000;
@@ -274,8 +274,8 @@ TEST(ShellStore, OneGridServesAllThatAskForAFinerOneThanTheLimitsAllow) {
 }
 
 TEST(ShellStore, KeepsTheLastThatItHasRoomFor) {
-    const PreparedCut ready = prepared(corners_graph(3, 0.65));
-    const CutGraph& cut = ready.cut;
+    const PreparedGraph ready = prepared(corners_graph(3, 0.65));
+    const DetailGraph& cut = ready.cut;
     ShellStore none(0);
     for (int i = 0; i < 2; ++i)
         ASSERT_FALSE(none.points(cut, cut.root, unlimited_steps, detail_for(cut, 20), {})->points.empty());
@@ -295,7 +295,7 @@ TEST(Shell, TintsAndMaterialsAreTheLeaves) {
         set.instances.push_back(
             {self, {Mat3(0.7), 0.3 * Vec3(j & 1 ? 1 : -1, j & 2 ? 1 : -1, j & 4 ? 1 : -1)}, {}, {}, {}});
     graph.root = graph.add(std::move(set));
-    const PreparedCut ready = prepared(graph);
+    const PreparedGraph ready = prepared(graph);
     ShellRequest request;
     request.node = ready.cut.root;
     request.detail_per_unit = detail_for(ready.cut, 40);

@@ -101,6 +101,20 @@ TEST(Cpfg, ChoosesByTheSharesOfProbabilities) {
     EXPECT_THAT(model.translation, HasSubstr(": 30/90"));
 }
 
+TEST(Cpfg, AContextOfAnythingIsNone) {
+    const Imported model = cpfg("Lsystem: 1\nseed: 7\nderivation length: 8\nAxiom: A\n"
+                                "* < A > * --> F(1)A : 30\nA --> F(1)[+A]A : 60\nendlsystem\n");
+    EXPECT_TRUE(model.graph) << model.said();
+    EXPECT_THAT(model.translation, HasSubstr("  A -> F(1)A : 30/90\n"));
+}
+
+TEST(Cpfg, CommentsAskNoEnvironment) {
+    const Imported model = cpfg("Lsystem: 1\nderivation length: 1\nAxiom: F\n/* no ?E here */\nF --> F+F\n"
+                                "endlsystem\n");
+    EXPECT_TRUE(model.graph);
+    EXPECT_EQ(model.said(), "");
+}
+
 TEST(Cpfg, AHomomorphismOfDepthOneIsNotAppliedToItself) {
     const Imported model =
         cpfg("Lsystem: 1\nderivation length: 0\nAxiom: F(2)\nhomomorphism\nF(x) --> F(x)F(x)\n"

@@ -96,6 +96,24 @@ TEST(Lparser, WhatIsWrittenBehindASymbolStaysBehindWhatItBecomes) {
     EXPECT_NEAR(segments[0].second.y, 50, 1e-9);
 }
 
+TEST(Lparser, NumbersThatAreNoneAreNone) {
+    const Imported model("a.ls", "1\n90\n10\nA(50)F(x)F\nA=F(x)\n@\n");
+    ASSERT_TRUE(model.graph) << model.said();
+    EXPECT_THAT(model.said(), HasSubstr("a.ls:4:6: warning: 'x' is read as the number 0"));
+    EXPECT_THAT(model.translation, HasSubstr("  A(x) -> F(0)\n"));
+}
+
+TEST(Lparser, SymbolsWithNamesAreToldFromLetters) {
+    const Imported model("a.ls", "1\n90\n10\nA\nA=At@S\n@\n");
+    EXPECT_THAT(model.translation, HasSubstr("  A -> A t At S\n")) << model.said();
+}
+
+TEST(Lparser, ANumberWithoutMeaningKeepsNoRuleFromItsSymbol) {
+    const Imported model("a.ls", "1\n90\n10\n|(3)\n|=F\n@\n");
+    EXPECT_EQ(model.segments().size(), 1u) << model.said();
+    EXPECT_THAT(model.said(), HasSubstr("the number of '|' means nothing"));
+}
+
 TEST(Lparser, BlocksAreDrawnWithinPolygons) {
     const Imported model("a.ls", "1\n90\n10\n{.F.+f.A}\nA=F\n@\n");
     EXPECT_EQ(model.segments().size(), 2u) << model.said();

@@ -63,5 +63,17 @@ TEST(PartTable, PartsStayWhereTheyAre) {
     EXPECT_EQ(reach_of(table.find(999, 0, {})), 999);
 }
 
+TEST(PartTable, VerticesOfOpenPolygonsTakeTheirRoom) {
+    PartTable table;
+    table.add(1, 0, {}, part_of(0, 1));
+    const std::size_t one = table.bytes();
+    TurtlePart part = part_of(0, 1);
+    part.vertices.resize(10);
+    part.polygon_ends.push_back({std::vector<Vec3>(20), 0});
+    part.polygons.emplace_back(30);
+    table.add(2, 0, {}, std::move(part));
+    EXPECT_EQ(table.bytes(), 2 * one + 60 * sizeof(Vec3));
+}
+
 } // namespace
 } // namespace graftal

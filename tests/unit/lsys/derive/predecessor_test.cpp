@@ -108,16 +108,16 @@ TEST(LsysPredecessors, whatIsHardlyMeant) {
 }
 
 /// `pattern -> successor`, letters and brackets.
-struct PlainRule {
+struct MatchedRule {
     std::string predecessor;
     std::string successor;
 };
 
-std::string plainly_derived(const std::string& word, const std::vector<PlainRule>& rules) {
+std::string plainly_derived(const std::string& word, const std::vector<MatchedRule>& rules) {
     std::string out;
     for (std::size_t at = 0; at < word.size();) {
-        const PlainRule* fits = nullptr;
-        for (const PlainRule& rule : rules)
+        const MatchedRule* fits = nullptr;
+        for (const MatchedRule& rule : rules)
             if (!fits && word.compare(at, rule.predecessor.size(), rule.predecessor) == 0) fits = &rule;
         out += fits ? fits->successor : word.substr(at, 1);
         at += fits ? fits->predecessor.size() : 1;
@@ -139,8 +139,8 @@ class RandomTexts {
         return out;
     }
     /// A pattern that may close and open branches, and a successor that does the same.
-    PlainRule rule() {
-        PlainRule rule;
+    MatchedRule rule() {
+        MatchedRule rule;
         const bool closes = below(4) == 0, opens = below(4) == 0;
         for (std::string* side : {&rule.predecessor, &rule.successor}) {
             *side = text(below(3), 1);
@@ -164,7 +164,7 @@ TEST(LsysPredecessors, wordsAreThoseOfAPlainDeriver) {
     for (unsigned seed = 0; seed < 2000; ++seed) {
         RandomTexts random(seed);
         const std::string axiom = "A" + random.text(8, 2);
-        std::vector<PlainRule> rules;
+        std::vector<MatchedRule> rules;
         std::string statements = "modules A B C\naxiom " + spaced(axiom) + "\n";
         for (std::size_t i = 0; i < 3; ++i) {
             rules.push_back(random.rule());

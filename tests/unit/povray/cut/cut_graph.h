@@ -14,7 +14,7 @@ inline std::optional<Cut> cut_graph(const Graph& graph, const Components& compon
                                     const DetailOptions& detail, Diagnostics& diagnostics,
                                     const CutOptions& options = {}, const Control& control = no_control()) {
     if (refuse_endless(graph, components, detail, diagnostics)) return std::nullopt;
-    const PreparedCut prepared = prepare_cut(graph, components, bounds, detail.preparing());
+    const PreparedGraph prepared = prepare_graph(graph, components, bounds, detail.preparing());
     return cut_prepared(graph, prepared, view, detail, diagnostics, options, control);
 }
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 #include "compiler/detail/graph/symmetry.h"
 #include "compiler/detail/weights.h"
 #include "compiler/povray/cut/calibrate.h"
@@ -22,18 +22,18 @@ double between(double low, double high, std::mt19937& random) {
 }
 
 /// `size` nodes, each a union of images of others by the same unequal scales.
-CutGraph unequal_scales(NodeId size) {
+DetailGraph unequal_scales(NodeId size) {
     std::mt19937 random(5);
     std::vector<double> scales;
     for (int i = 0; i < 24; ++i)
         scales.push_back(between(.1, .4, random));
-    CutGraph cut;
+    DetailGraph cut;
     for (NodeId id = 0; id < size; ++id) {
-        CutNode node;
+        DetailNode node;
         node.unending = true;
         node.ball = {Vec3(0.0), 1};
         for (const double scale : scales) {
-            CutEdge edge;
+            DetailEdge edge;
             edge.child = std::uniform_int_distribution<NodeId>(0, size - 1)(random);
             edge.stretch = edge.volume_stretch = scale;
             edge.similarity = true;
@@ -46,7 +46,7 @@ CutGraph unequal_scales(NodeId size) {
 }
 
 TEST(Effort, UnequalScalesAreToldApartAsFarAsTheWorkAllows) {
-    const CutGraph one = unequal_scales(1), many = unequal_scales(300);
+    const DetailGraph one = unequal_scales(1), many = unequal_scales(300);
     const PieceKind kind{0, unlimited_steps, PieceKind::step_of(1000)};
     Weights weights_of_one(one), weights_of_many(many);
     const double leaves = weights_of_one.of(kind).leaves;
@@ -58,7 +58,7 @@ TEST(Effort, UnequalScalesAreToldApartAsFarAsTheWorkAllows) {
 }
 
 TEST(Effort, KindsAreToldApartByTheVisitsThatTheyMayTake) {
-    const CutGraph many = unequal_scales(300);
+    const DetailGraph many = unequal_scales(300);
     const PieceKind kind{0, unlimited_steps, PieceKind::step_of(1000)};
     Weights usual(many), few(many, {.most_visits = 100'000});
     const double leaves = usual.of(kind).leaves;
@@ -85,7 +85,7 @@ TEST(Effort, MapsThatShearAreCalibratedWithoutUnfoldingThemAll) {
     for (int i = 0; i < 3; ++i)
         root.instances.push_back({master, Affine::translate({4.0 * i, 0, 0}), {}, {}, {}});
     graph.root = graph.add(std::move(root));
-    CutGraph cut = test::cut_of(graph);
+    DetailGraph cut = test::cut_of(graph);
     const Symmetry symmetry = find_symmetry(cut);
     std::uint64_t visits = 0;
     const double triangles = visible_cube_triangles(cut, symmetry, unlimited_steps, &visits);
@@ -113,7 +113,7 @@ TEST(Effort, CrowdsThatDifferInOneInstanceAreNotComparedForEver) {
         root.instances.push_back({graph.add(std::move(object)), {}, {}, {}, {}});
     }
     graph.root = graph.add(std::move(root));
-    CutGraph cut = test::cut_of(graph);
+    DetailGraph cut = test::cut_of(graph);
     EXPECT_LE(find_symmetry(cut).comparisons, 10'100'000u); // each crowd with each before: 130 million
 }
 

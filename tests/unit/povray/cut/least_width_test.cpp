@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -92,6 +93,49 @@ std::vector<std::pair<double, double>> spans_at(const Cut& cut, double y, double
     return spans;
 }
 
+double area_of_meshes(const Cut& cut) {
+    double area = 0;
+    for (const PlacementGroup& group : cut.groups)
+        for (const Placement& placement : group.placements) {
+            const Mesh& mesh = std::get<Mesh>(cut.bodies[placement.body].shape);
+            const Affine& place = placement.world_from_body;
+            for (const auto& [a, b, c] : mesh.triangles) {
+                const Vec3 p = place(mesh.vertices[a]);
+                area += glm::length(glm::cross(place(mesh.vertices[b]) - p, place(mesh.vertices[c]) - p)) / 2;
+            }
+        }
+    return area;
+}
+
+// Light comes through a sheet once, as through a polygon.
+TEST(LeastWidth, MeshesOfTranslucentSheetsHaveOneFace) {
+    for (const PrimitiveKind kind : {PrimitiveKind::sphere, PrimitiveKind::cube})
+        for (const double thickness : {0.0, 1e-6}) {
+            const auto area = [&](const Material& material) {
+                Graph graph;
+                graph.materials = {material};
+                graph.materials[0].name = "leaf";
+                graph.root = graph.add({"root", {}, {}, {}, {}});
+                Instance instance;
+                instance.master = graph.primitive(kind);
+                instance.parent_from_child = Affine::scale({1, 1, thickness});
+                instance.material = 0;
+                graph.objects[graph.root].instances.push_back(instance);
+                const Components components = strong_components(graph);
+                const auto bounds = bound_objects(graph, components, decide_contraction(graph, components));
+                View view;
+                view.size = {640, 480};
+                view.camera.location = Vec3(0, 0, 4);
+                Diagnostics diagnostics;
+                const auto cut = test::cut_graph(graph, components, bounds, view, {}, diagnostics);
+                return cut ? area_of_meshes(*cut) : 0;
+            };
+            const double face = kind == PrimitiveKind::cube ? 4 : std::numbers::pi;
+            EXPECT_NEAR(area({.translucency = 0.5}), face, 0.06) << name_of(kind) << thickness;
+            EXPECT_NEAR(area({}), 2 * face, 0.06) << name_of(kind) << thickness;
+            EXPECT_NEAR(area({.translucency = 0.5, .transparency = 0.5}), 2 * face, 0.06);
+        }
+}
 // Thin maps took 1.8 GB and ended at an error of 14 pixels; then lines had gaps of forty.
 TEST(LeastWidth, ThinMapsMakeThinLinesWithoutGaps) {
     for (const double thickness : {0.0, 1e-9, 1e-5, 1e-3}) {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/analysis/contraction.h"
-#include "compiler/detail/graph/build_cut_graph.h"
+#include "compiler/detail/graph/build_detail_graph.h"
 #include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/prepare.h"
 #include "compiler/povray/cut/cut.h"
@@ -221,9 +221,9 @@ TEST(RunCut, WhatIsOutOfSightIsNamedWhereMemoryLacks) {
 
 TEST(RunCut, CellsHoldNoEdges) {
     const Bounded model(two_branches(20'000, false));
-    const PreparedCut prepared = prepare_cut(model.graph, model.components, model.bounds, {});
+    const PreparedGraph prepared = prepare_graph(model.graph, model.components, model.bounds, {});
     std::size_t edges = 0, items = 0;
-    for (const CutNode& node : prepared.cut.nodes) {
+    for (const DetailNode& node : prepared.cut.nodes) {
         edges += node.edges.size();
         if (node.cell) items += node.cell->count;
     }
@@ -249,7 +249,7 @@ TEST(RunCut, CellsKnowTheSizesOfPartsHoweverLargeOrSmall) {
         object.packed.materials.resize(1);
         graph.root = graph.add(std::move(object));
         const Bounded model(std::move(graph));
-        const CutGraph cut = build_cut_graph(model.graph, model.bounds);
+        const DetailGraph cut = build_detail_graph(model.graph, model.bounds);
         EXPECT_TRUE(cut.nodes[cut.root].cell);
         return cut.nodes[cut.root].cell->alike.at(0).quarter_octave;
     };
@@ -277,8 +277,8 @@ TEST(RunCut, ProxiesAreAsDarkAsWhatTheyStandFor) {
         object.packed.materials.resize(1);
         graph.root = graph.add(std::move(object));
         const Bounded model(std::move(graph));
-        const CutGraph cut = build_cut_graph(model.graph, model.bounds);
-        const CutNode& cell = cut.nodes[cut.root];
+        const DetailGraph cut = build_detail_graph(model.graph, model.bounds);
+        const DetailNode& cell = cut.nodes[cut.root];
         ASSERT_TRUE(cell.cell);
         const double share = std::pow(cell.node_from_proxy.linear[0][0] / (0.5 * cell.cell->box.size().x), 2);
         EXPECT_GE(share, least) << radius;

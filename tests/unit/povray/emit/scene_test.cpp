@@ -162,6 +162,48 @@ TEST(EmitPovray, FlattenedPlacementsCanBeInverted) {
     EXPECT_THAT(scene.text(), HasSubstr("matrix <500,0,0,0,500,0,0,0,0.0005,0,0,0>"));
 }
 
+constexpr const char* clear_within = "interior_texture { pigment { rgbt 1 } }";
+
+// From within, the far face of a sheet is clear: light comes through the sheet once.
+TEST(EmitPovray, TranslucentSheetsAreOneSurface) {
+    for (const double thickness : {0.002, 0.0}) {
+        Scene scene;
+        const std::uint32_t disc = scene.body(PrimitiveKind::cylinder);
+        scene.group(scene.palette({Rgb(1)}), {{disc, place({0, 0, 0}, {1, thickness, 1})}})
+            .material.translucency = 0.5;
+        EXPECT_EQ(count(scene.text(), clear_within), 1u);
+        EXPECT_EQ(count(scene.text(), "union"), 0u);
+    }
+}
+
+TEST(EmitPovray, OtherSolidsAreOpaqueWithin) {
+    const auto text_of = [](Vec3 size, const Material& material) {
+        Scene scene;
+        scene.group(scene.palette({Rgb(1)}), {{scene.body(PrimitiveKind::cylinder), place({0, 0, 0}, size)}})
+            .material = material;
+        return scene.text();
+    };
+    EXPECT_EQ(count(text_of({1, 1, 1}, {.translucency = 0.5}), clear_within), 0u);
+    EXPECT_EQ(count(text_of({1, 0.002, 1}, {}), clear_within), 0u);
+    EXPECT_EQ(count(text_of({1, 0.002, 1}, {.translucency = 0.5, .transparency = 0.5}), clear_within), 0u);
+}
+
+TEST(EmitPovray, SheetsHaveAUnionBesideThatOfOtherSolids) {
+    Scene scene;
+    const std::uint32_t body = scene.body(PrimitiveKind::cylinder);
+    const Affine thick = place({0, 0, 0}, {1, 1, 1}), thin = place({0, 0, 0}, {1, 0.002, 1});
+    scene.group(scene.palette({Rgb(1)}), {{body, thick}, {body, thin}, {body, thin}, {body, thick}})
+        .material.translucency = 0.5;
+    for (const bool include : {false, true}) {
+        scene.options.include = include;
+        const std::string text = scene.text();
+        EXPECT_EQ(count(text, "{"), count(text, "}"));
+        EXPECT_EQ(count(text, clear_within), 1u);
+        EXPECT_EQ(count(text, "union {"), 3u);
+        EXPECT_EQ(count(text, "cylinder {"), 4u);
+    }
+}
+
 TEST(EmitPovray, GroupsThatLookAlikeShareAUnion) {
     Scene scene;
     const std::uint32_t ball = scene.body(PrimitiveKind::sphere);

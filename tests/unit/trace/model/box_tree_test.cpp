@@ -16,7 +16,7 @@ std::vector<BoxedItem> items(std::size_t count, std::mt19937& random) {
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3 low(place(random), place(random), i % 5 == 0 ? 0.25 : place(random));
         const Vec3 more(size(random), size(random), i % 5 == 0 ? 0 : size(random));
-        result.emplace_back(Box{low, low + more}, 1, first_number + static_cast<std::uint32_t>(i));
+        result.emplace_back(Box{low, low + more}, first_number + static_cast<std::uint32_t>(i));
     }
     return result;
 }
@@ -103,7 +103,7 @@ TEST(BoxTree, boxesWithoutEndsAreSorted) {
     std::mt19937 random(13);
     std::vector<BoxedItem> boxed = items(40, random);
     for (std::uint32_t i = 0; i < 20; ++i)
-        boxed.emplace_back(Box{Vec3(i % 3 ? -1e300 : 1e38), Vec3(1e300)}, 1, first_number + 40 + i);
+        boxed.emplace_back(Box{Vec3(i % 3 ? -1e300 : 1e38), Vec3(1e300)}, first_number + 40 + i);
     std::vector<BoxNode> nodes;
     ASSERT_NE(build_box_tree(boxed, nodes), no_tree);
     std::vector<int> met(60);

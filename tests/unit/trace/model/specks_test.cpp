@@ -1,7 +1,5 @@
 #include "runtime/trace/model/specks.h"
 
-#include <algorithm>
-#include <memory>
 #include <random>
 #include <vector>
 

@@ -58,7 +58,7 @@ Vec3 normal_by_leaves(const std::vector<WalkedLeaf>& leaves, Vec3 point) {
 
 TEST(LimitNormal, IsThatOfTheMeshes) {
     const auto model = traced(corners(), options(true));
-    const CutGraph& cut = model->prepared.cut;
+    const DetailGraph& cut = model->prepared.cut;
     const Symmetry& symmetry = model->prepared.symmetry;
     BakeRequest request;
     request.representative = cut.root;

@@ -2,10 +2,7 @@
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <random>
-#include <string>
-#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -124,6 +125,23 @@ TEST(TraversalEven, IsNotForWhatIsTurnedSqueezedOrEndless) {
     EXPECT_FALSE(is_even(Affine::rotate({0, 0, 1}, 20) * half));
     EXPECT_FALSE(is_even(Affine::scale(Vec3(0.5, 0.5, 0.25))));
     EXPECT_FALSE(is_even(Affine::scale(Vec3(-0.5))));
+}
+
+/// Packets of rays know no packed boxes.
+TEST(TraversalEven, IsNotForRuns) {
+    auto run = std::make_shared<graftal::Run>();
+    for (int i = 0; i < 3; ++i)
+        run->add(
+            {.base = Vec3(i, 0, 0), .axis = Vec3(0, 1, 0), .radius = 0.1, .shape = PrimitiveKind::cylinder});
+    Object twigs{"twigs", {}, {}, {}, {}};
+    twigs.packed.run = run;
+    twigs.packed.materials.emplace_back();
+    Graph graph = empty_graph();
+    place(graph, graph.root, graph.add(std::move(twigs)), {});
+    const auto model = traced(graph, {});
+    EXPECT_FALSE(model->packed_boxes.empty());
+    EXPECT_FALSE(model->even);
+    EXPECT_FALSE(Traversal(*model).takes_packets());
 }
 
 } // namespace

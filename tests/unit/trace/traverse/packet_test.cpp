@@ -1,13 +1,9 @@
 // Rays in packets meet what each of them meets alone, to the last bit, by whatever instructions.
 
 #include <array>
-#include <bit>
 #include <cstddef>
-#include <memory>
-#include <optional>
 #include <random>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "runtime/trace/camera_rays.h"

@@ -200,18 +200,22 @@ TEST(Traversal, FollowsAChainOfAHundredThousand) {
     EXPECT_TRUE(traversal.meets_any({{-10, 0, 0}, {1, 0, 0}}, {}));
 }
 
-TEST(Traversal, GivesUpWhereItWouldNotEnd) {
-    // 2^60 balls in nearly one place.
+/// 2^60 balls in one place, or nearly so.
+Graph pairs_of_pairs(double apart) {
     Graph graph = empty_graph();
     ObjectId last = graph.primitive(PrimitiveKind::sphere);
     for (int i = 0; i < 60; ++i) {
         const ObjectId pair = graph.add({"pair" + std::to_string(i), {}, {}, {}, {}});
-        place(graph, pair, last, Affine::translate({0, 0, 1e-7}));
-        place(graph, pair, last, Affine::translate({0, 0, -1e-7}));
+        place(graph, pair, last, Affine::translate({0, 0, apart}));
+        place(graph, pair, last, Affine::translate({0, 0, 0 - apart}));
         last = pair;
     }
     place(graph, graph.root, last, {});
-    const auto model = traced(graph, exact());
+    return graph;
+}
+
+TEST(Traversal, GivesUpWhereItWouldNotEnd) {
+    const auto model = traced(pairs_of_pairs(1e-7), exact());
     Traversal traversal(*model);
     SurfaceHit hit;
     EXPECT_TRUE(traversal.closest({{0, 0, 10}, {0, 0, -1}}, {}, hit));
@@ -221,16 +225,7 @@ TEST(Traversal, GivesUpWhereItWouldNotEnd) {
 }
 
 TEST(Traversal, TakesPartsThatCoincideForOne) {
-    Graph graph = empty_graph();
-    ObjectId last = graph.primitive(PrimitiveKind::sphere);
-    for (int i = 0; i < 60; ++i) {
-        const ObjectId pair = graph.add({"pair" + std::to_string(i), {}, {}, {}, {}});
-        place(graph, pair, last, {});
-        place(graph, pair, last, {});
-        last = pair;
-    }
-    place(graph, graph.root, last, {});
-    const auto model = traced(graph, exact());
+    const auto model = traced(pairs_of_pairs(0), exact());
     Traversal traversal(*model);
     EXPECT_TRUE(traversal.meets_any({{0, 0, 10}, {0, 0, -1}}, {}));
     EXPECT_EQ(traversal.given_up(), 0u);

@@ -1,4 +1,4 @@
-#include "compiler/detail/graph/build_cut_graph.h"
+#include "compiler/detail/graph/build_detail_graph.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ class Builder {
             WorkMeter* meter)
         : graph_(std::move(graph)), components_(components), bounds_(bounds), meter_(meter) {}
 
-    CutGraph build() {
+    DetailGraph build() {
         const auto count = graph_.objects.size();
         cut_.nodes.resize(count);
         cut_.root = graph_.root;
@@ -51,7 +51,7 @@ class Builder {
             Object& object = graph_.objects[id];
             const ObjectBounds& bounds = bounds_[id];
             const bool part = whole_of[id] != id;
-            CutNode node;
+            DetailNode node;
             node.name = graph_.objects[whole_of[id]].name;
             node.primitive = object.primitive;
             node.combination = object.combination;
@@ -77,7 +77,7 @@ class Builder {
                 node.terminal = true;
             } else if (node.unending && !part &&
                        (node.combination != Combination::subtract || ends(node.edges.front()))) {
-                for (const CutEdge& candidate : node.edges)
+                for (const DetailEdge& candidate : node.edges)
                     if (ends(candidate)) node.stop_edges.push_back(candidate);
             }
             cut_.nodes[id] = std::move(node);
@@ -97,7 +97,7 @@ class Builder {
     }
 
     /// Whether it leads to an ending object, maybe by a detour.
-    bool ends(const CutEdge& edge) const {
+    bool ends(const DetailEdge& edge) const {
         return edge.levels == 0 && (edge.child >= graph_.objects.size() || !components_.unending[edge.child]);
     }
 
@@ -107,7 +107,7 @@ class Builder {
         for (auto id = static_cast<NodeId>(graph_.objects.size()); id < cut_.nodes.size(); ++id)
             if (cut_.nodes[id].primitive == primitive) return id;
         const ObjectBounds bounds = primitive_bounds(primitive);
-        CutNode node;
+        DetailNode node;
         node.name = name_of(primitive);
         node.primitive = primitive;
         node.unbounded = bounds.unbounded;
@@ -128,9 +128,9 @@ class Builder {
                is_singular(instance.parent_from_child, flattest_plane);
     }
 
-    CutEdge edge(const Instance& instance, const CutNode& node, ObjectId user) {
-        CutEdge edge{instance.master, instance.parent_from_child, PathTint(instance.tint), instance.material,
-                     levels_of(instance, components_)};
+    DetailEdge edge(const Instance& instance, const DetailNode& node, ObjectId user) {
+        DetailEdge edge{instance.master, instance.parent_from_child, PathTint(instance.tint),
+                        instance.material, levels_of(instance, components_)};
         if (is_flat_plane(instance))
             edge.node_from_child = place_of_plane(edge.node_from_child).value_or(Affine());
         const Vec3 sigma = singular_values(edge.node_from_child.linear);
@@ -149,8 +149,8 @@ class Builder {
 
     /// A node between the two that holds the singular edge alone; the edge to it is the identity. It takes
     /// over the level, and passes on what it is asked to draw, cut or not.
-    CutEdge sealed_detour(CutEdge edge, const CutNode& node) {
-        CutNode detour;
+    DetailEdge sealed_detour(DetailEdge edge, const DetailNode& node) {
+        DetailNode detour;
         detour.name = node.name;
         detour.unending = edge.levels > 0;
         detour.sealed = true;
@@ -181,30 +181,30 @@ class Builder {
     const Components& components_;
     const std::vector<ObjectBounds>& bounds_;
     WorkMeter* meter_;
-    CutGraph cut_;
+    DetailGraph cut_;
 };
 
 /// Until it is known how much is seen of them, edges weigh as much as the squares that they reach over.
-void weigh_by_reach(CutGraph& cut) {
-    for (CutNode& node : cut.nodes)
-        for (CutEdge& edge : node.edges) {
+void weigh_by_reach(DetailGraph& cut) {
+    for (DetailNode& node : cut.nodes)
+        for (DetailEdge& edge : node.edges) {
             const double reach = edge.stretch * std::max(cut.nodes[edge.child].ball.radius, 1e-9);
             edge.weight = std::max(reach * reach, 1e-300);
         }
 }
 
-void mark_textured(CutGraph& cut) {
+void mark_textured(DetailGraph& cut) {
     const std::vector<NodeId> order = masters_first(cut);
     const auto is_painted = [&](const std::optional<MaterialId>& material) {
         return material && cut.materials[*material].is_painted();
     };
-    const auto shows_paint = [&](const CutEdge& edge) {
+    const auto shows_paint = [&](const DetailEdge& edge) {
         return cut.nodes[edge.child].textured || is_painted(edge.material);
     };
     for (bool changed = true; changed;) {
         changed = false;
         for (const NodeId id : order) {
-            CutNode& node = cut.nodes[id];
+            DetailNode& node = cut.nodes[id];
             if (node.textured) continue;
             node.textured = (node.cell && std::ranges::any_of(node.cell->source->materials, is_painted)) ||
                             std::ranges::any_of(node.edges, shows_paint) ||
@@ -217,17 +217,17 @@ void mark_textured(CutGraph& cut) {
 /// Gives wholes the edges of their parts for as long as it lives: a part looks as its whole does.
 class JoinedParts {
   public:
-    explicit JoinedParts(CutGraph& cut) : cut_(cut) {
+    explicit JoinedParts(DetailGraph& cut) : cut_(cut) {
         for (NodeId id = 0; id < cut.nodes.size(); ++id) {
-            CutNode& node = cut.nodes[id];
+            DetailNode& node = cut.nodes[id];
             // A detour has taken over the level of its edge: what it leads to is no part.
             if (node.sealed ||
-                std::ranges::none_of(node.edges, [&](const CutEdge& edge) { return leads_to_part(edge); }))
+                std::ranges::none_of(node.edges, [&](const DetailEdge& edge) { return leads_to_part(edge); }))
                 continue;
-            std::vector<CutEdge> joined;
-            for (const CutEdge& edge : node.edges) {
+            std::vector<DetailEdge> joined;
+            for (const DetailEdge& edge : node.edges) {
                 if (leads_to_part(edge)) {
-                    std::vector<CutEdge>& held = cut.nodes[edge.child].edges;
+                    std::vector<DetailEdge>& held = cut.nodes[edge.child].edges;
                     parts_.push_back({id, edge.child, joined.size(), held.size()});
                     joined.insert(joined.end(), held.begin(), held.end());
                     held.clear();
@@ -241,8 +241,8 @@ class JoinedParts {
 
     ~JoinedParts() {
         for (const Part& part : parts_) {
-            const CutNode& whole = cut_.nodes[part.whole];
-            CutNode& node = cut_.nodes[part.part];
+            const DetailNode& whole = cut_.nodes[part.whole];
+            DetailNode& node = cut_.nodes[part.part];
             const auto first = whole.edges.begin() + static_cast<std::ptrdiff_t>(part.first);
             node.edges.assign(first, first + static_cast<std::ptrdiff_t>(part.count));
             node.mean = whole.mean;
@@ -261,20 +261,20 @@ class JoinedParts {
         std::size_t first, count; ///< of its edges among those of the whole
     };
 
-    bool leads_to_part(const CutEdge& edge) const {
+    bool leads_to_part(const DetailEdge& edge) const {
         return edge.levels == 0 && cut_.nodes[edge.child].unending;
     }
 
-    CutGraph& cut_;
+    DetailGraph& cut_;
     std::vector<Part> parts_;
-    std::vector<std::pair<NodeId, std::vector<CutEdge>>> wholes_;
+    std::vector<std::pair<NodeId, std::vector<DetailEdge>>> wholes_;
 };
 
 } // namespace
 
-CutGraph build_cut_graph(Graph graph, const std::vector<ObjectBounds>& bounds, WorkMeter* meter) {
+DetailGraph build_detail_graph(Graph graph, const std::vector<ObjectBounds>& bounds, WorkMeter* meter) {
     const Components components = strong_components(graph);
-    CutGraph cut = Builder(std::move(graph), components, bounds, meter).build();
+    DetailGraph cut = Builder(std::move(graph), components, bounds, meter).build();
     {
         const JoinedParts joined(cut);
         mark_textured(cut);

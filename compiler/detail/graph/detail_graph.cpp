@@ -1,4 +1,4 @@
-#include "compiler/detail/graph/cut_graph.h"
+#include "compiler/detail/graph/detail_graph.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +14,10 @@ namespace graftal {
 
 namespace {
 
-MeanColour mean_of(const CutGraph& cut, const CutNode& node) {
+MeanColour mean_of(const DetailGraph& cut, const DetailNode& node) {
     MeanColour sum{Rgb(0.0), 0};
     double weights = 0;
-    for (const CutEdge& edge : node.edges) {
+    for (const DetailEdge& edge : node.edges) {
         MeanColour mean = cut.nodes[edge.child].mean;
         if (edge.material) mean = {mean.over(cut.materials[*edge.material].rgb), 0};
         sum.fixed += edge.weight * edge.tint.over(mean.fixed);
@@ -28,12 +28,12 @@ MeanColour mean_of(const CutGraph& cut, const CutNode& node) {
 }
 
 /// Shares, by material and of parts that inherit, in the visible area below a node, all together 1.
-void set_shares(const CutGraph& cut, const CutNode& node, const std::vector<double>& shares,
+void set_shares(const DetailGraph& cut, const DetailNode& node, const std::vector<double>& shares,
                 std::vector<double>& sum) {
     const std::size_t width = cut.materials.size() + 1;
     sum.assign(width, 0);
     double weights = 0;
-    for (const CutEdge& edge : node.edges) {
+    for (const DetailEdge& edge : node.edges) {
         weights += edge.weight;
         const double* const below = shares.data() + edge.child * width;
         for (std::size_t m = 0; m + 1 < width; ++m)
@@ -54,12 +54,12 @@ std::optional<MaterialId> most_seen(std::span<const double> shares, const std::v
     return static_cast<MaterialId>(most);
 }
 
-std::vector<NodeId> masters_first(const CutGraph& cut) {
+std::vector<NodeId> masters_first(const DetailGraph& cut) {
     return masters_first(cut.nodes.size(),
-                         [&](NodeId id) -> const std::vector<CutEdge>& { return cut.nodes[id].edges; });
+                         [&](NodeId id) -> const std::vector<DetailEdge>& { return cut.nodes[id].edges; });
 }
 
-void set_mean_colours(CutGraph& cut) {
+void set_mean_colours(DetailGraph& cut) {
     settle(cut, 48, 1e-7, [&](NodeId id) {
         const MeanColour before = std::exchange(cut.nodes[id].mean, mean_of(cut, cut.nodes[id]));
         const MeanColour& mean = cut.nodes[id].mean;
@@ -67,7 +67,7 @@ void set_mean_colours(CutGraph& cut) {
     });
 }
 
-void set_finishes(CutGraph& cut) {
+void set_finishes(DetailGraph& cut) {
     constexpr std::size_t most_shares = 8'000'000;
     const std::size_t width = cut.materials.size() + 1; // the last share is of what inherits
     if (cut.nodes.size() > most_shares / width) return;
@@ -87,12 +87,12 @@ void set_finishes(CutGraph& cut) {
             cut.nodes[id].finish = most_seen({shares.data() + id * width, width}, cut.materials);
 }
 
-void mark_solid(CutGraph& cut) {
+void mark_solid(DetailGraph& cut) {
     std::vector<std::vector<NodeId>> users(cut.nodes.size());
     std::vector<NodeId> found;
     for (NodeId id = 0; id < cut.nodes.size(); ++id) {
         cut.nodes[id].solid = false;
-        for (const CutEdge& edge : cut.nodes[id].edges)
+        for (const DetailEdge& edge : cut.nodes[id].edges)
             users[edge.child].push_back(id);
         if (cut.nodes[id].primitive || cut.nodes[id].cell) found.push_back(id);
     }

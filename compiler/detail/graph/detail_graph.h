@@ -15,7 +15,7 @@ namespace graftal {
 
 using NodeId = std::uint32_t;
 
-struct CutEdge {
+struct DetailEdge {
     NodeId child = 0;
     Affine node_from_child;
     PathTint tint;
@@ -30,12 +30,13 @@ struct CutEdge {
 struct EdgeCell;
 
 /// An object as the cut sees it.
-struct CutNode {
+struct DetailNode {
     std::string name;
     std::optional<Primitive> primitive;
     Combination combination = Combination::unite; ///< of the edges, and of the stop edges except a terminal
-    std::vector<CutEdge> edges;
-    std::vector<CutEdge> stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
+    std::vector<DetailEdge> edges;
+    std::vector<DetailEdge>
+        stop_edges; ///< drawn in place of the edges where the node is cut; if empty: proxy
     std::shared_ptr<const EdgeCell> cell; ///< in place of edges: see for_each_edge() (edge_cell.h)
     bool terminal = false;                ///< stop_edges holds the terminal, not the ending instances
     double terminal_px = 0;               ///< the object's (graph.h)
@@ -57,8 +58,8 @@ struct CutNode {
 };
 
 /// A graph after the passes for detail, with what unfolding it asks for at every edge.
-struct CutGraph {
-    std::vector<CutNode> nodes;
+struct DetailGraph {
+    std::vector<DetailNode> nodes;
     std::vector<Material> materials;
     NodeId root = 0;
     bool tinted = false;     ///< some instance has a tint
@@ -66,37 +67,37 @@ struct CutGraph {
 };
 
 /// The colour of the stand-in for a node.
-inline const MeanColour& colour_of_proxy(const CutNode& node) {
+inline const MeanColour& colour_of_proxy(const DetailNode& node) {
     return node.lit ? *node.lit : node.mean;
 }
 
 /// The change of looks along an edge of a node. A terminal takes on the mean colour of the node that is cut.
 template<typename Edge>
-LookStep look_step(const CutGraph& cut, const CutNode& node, bool is_cut, const Edge& edge) {
+LookStep look_step(const DetailGraph& cut, const DetailNode& node, bool is_cut, const Edge& edge) {
     return look_step(edge, is_cut && node.terminal ? &node.mean : nullptr, cut.materials);
 }
 
 /// Every node once, and after the nodes it leads to except those that lead back to it.
-std::vector<NodeId> masters_first(const CutGraph& cut);
+std::vector<NodeId> masters_first(const DetailGraph& cut);
 
 /// Sets the mean colours anew, by the weights of the edges. Exact for ending nodes, converging geometrically
 /// for the others.
-void set_mean_colours(CutGraph& cut);
+void set_mean_colours(DetailGraph& cut);
 
 /// Sets the finish that what stands for each node shows, by the weights of the edges: of its materials the
 /// one that is seen most, if more of it is seen than of what inherits. None for pictures, which wrap round
 /// single primitives, and for what is transparent, since one large lens is not what many small ones are. Sets
 /// none in graphs that are too large for it. Keeps those of nodes without edges.
-void set_finishes(CutGraph& cut);
+void set_finishes(DetailGraph& cut);
 
 /// The material of which most is seen, as above. `shares`: by material, and of what inherits.
 std::optional<MaterialId> most_seen(std::span<const double> shares, const std::vector<Material>& materials);
 
 /// Sets what is solid. O(graph).
-void mark_solid(CutGraph& cut);
+void mark_solid(DetailGraph& cut);
 
 /// The edges that a visit follows: all of them, or those of a cut node. None of a cell, which has others.
-inline const std::vector<CutEdge>& followed_edges(const CutNode& node, bool cut) {
+inline const std::vector<DetailEdge>& followed_edges(const DetailNode& node, bool cut) {
     return cut ? node.stop_edges : node.edges;
 }
 

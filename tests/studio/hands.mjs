@@ -94,7 +94,8 @@ function hand_on(page, { told }) {
       assert.fail(`it never came that ${what}`);
     },
     async place_of(selector) {
-      const box = await page.locator(selector).first().boundingBox();
+      let box; // null while handles are drawn anew
+      await hand.until(async () => (box = await page.locator(selector).first().boundingBox()), `${selector} stands there`);
       return [box.x + box.width / 2, box.y + box.height / 2];
     },
     async drag([x, y], dx, dy, { steps = 4, shift = false } = {}) {

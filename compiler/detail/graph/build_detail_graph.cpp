@@ -144,7 +144,7 @@ class Builder {
         // A plane has no mesh that could be crushed.
         const bool crushed =
             !bounds_[instance.master].unbounded && is_singular(edge.node_from_child, flattest_map);
-        return crushed ? sealed_detour(std::move(edge), node) : edge;
+        return crushed ? sealed_detour(edge, node) : edge;
     }
 
     /// A node between the two that holds the singular edge alone; the edge to it is the identity. It takes

@@ -92,7 +92,7 @@ class StrokeEnds {
     struct Waiting {
         double distance = 0;
         std::size_t first = 0, node = 0;
-        auto operator<=>(const Waiting&) const = default;
+        auto operator<=>(const Waiting&) const = default; // NOLINT: clang 14 sees a null pointer here
     };
 
     static std::size_t number(const End& end) { return 2 * end.stroke + (end.last ? 1 : 0); }

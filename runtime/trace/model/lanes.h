@@ -104,12 +104,14 @@ GRAFTAL_INLINE double inverse_power(double power) {
     return std::bit_cast<double>(0x7fe0'0000'0000'0000 - std::bit_cast<std::uint64_t>(power));
 }
 
+// std::bit_cast of vectors is a function without AVX2 where it is not inlined: it hands them over in other
+// registers. A cast between vectors keeps the bits as well.
 GRAFTAL_INLINE Double4 power_below(const Double4& x) {
-    return std::bit_cast<Double4>(std::bit_cast<Long4>(x) & 0x7ff0'0000'0000'0000);
+    return reinterpret_cast<Double4>(reinterpret_cast<Long4>(x) & 0x7ff0'0000'0000'0000);
 }
 
 GRAFTAL_INLINE Double4 inverse_power(const Double4& power) {
-    return std::bit_cast<Double4>(0x7fe0'0000'0000'0000 - std::bit_cast<Long4>(power));
+    return reinterpret_cast<Double4>(0x7fe0'0000'0000'0000 - reinterpret_cast<Long4>(power));
 }
 
 GRAFTAL_INLINE Vec3 vec3_of(const Double4& v) {

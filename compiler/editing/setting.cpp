@@ -66,12 +66,12 @@ class SettingText {
         : document_(document), number_(fmt::format("{}", value)) {}
 
     SettingChange steps() {
-        if (const LsysFile* const tree = document_.lsys()) {
-            if (const LsysBlock* const block = main_block(*tree)) steps_of(*block);
-        } else if (const RifsFile* const tree = document_.rifs()) {
-            steps_of(tree->statements);
-        } else if (const InstModule* const tree = document_.inst()) {
-            steps_of(tree->scene);
+        if (const LsysFile* const lsys = document_.lsys()) {
+            if (const LsysBlock* const block = main_block(*lsys)) steps_of(*block);
+        } else if (const RifsFile* const rifs = document_.rifs()) {
+            steps_of(rifs->statements);
+        } else if (const InstModule* const inst = document_.inst()) {
+            steps_of(inst->scene);
         }
         return done("the text is at fault, so graftal does not know where its steps belong");
     }

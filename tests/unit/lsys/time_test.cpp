@@ -382,7 +382,9 @@ TEST(LsysTime, ModulesThatStayByChanceKeepTheirAge) {
             double oldest = 0;
             for (const PlantModule& module : plant->modules) {
                 const std::string& name = plant->names[module.name];
-                if (name == "A") EXPECT_EQ(module.age, 4) << rules;
+                if (name == "A") {
+                    EXPECT_EQ(module.age, 4) << rules;
+                }
                 if (name == "B") oldest = std::max(oldest, module.age);
                 stayed += name == "A";
             }

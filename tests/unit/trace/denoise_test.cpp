@@ -155,8 +155,9 @@ TEST(Denoise, ABrightPixelChangesNothingBeyondItsNeighbours) {
             for (int x = 0; x < width; ++x)
                 for (int c = 0; c < 3; ++c, ++i) {
                     ASSERT_FALSE(std::isnan(clean.picture.pixels[i])) << bright << " at " << x << ", " << y;
-                    if (x > bright_x + reach_px || y > bright_y + reach_px)
+                    if (x > bright_x + reach_px || y > bright_y + reach_px) {
                         ASSERT_EQ(clean.picture.pixels[i], before[i]) << bright << " at " << x << ", " << y;
+                    }
                 }
         for (const float error : clean.errors_255)
             ASSERT_TRUE(std::isfinite(error)) << bright;

@@ -303,7 +303,8 @@ std::optional<Tint> InstLowerer::lower_tints(const std::vector<InstTint>& tints)
 
 std::optional<ObjectId> InstLowerer::resolve(const InstReference& reference) {
     if (unknown_.contains(&reference)) return std::nullopt;
-    if (const auto mesh = meshes_.find(&reference); mesh != meshes_.end()) return primitive(mesh->second);
+    if (const auto mesh = meshes_.find(&reference); mesh != meshes_.end())
+        return primitives_.of(mesh->second);
     std::vector<double> arguments;
     for (const Expression& expression : reference.arguments)
         if (const std::optional<double> value = evaluate(expression, environment_, scratch_, draws_))
@@ -317,12 +318,12 @@ std::optional<ObjectId> InstLowerer::resolve(const InstReference& reference) {
     if (definition && random) return variant_of(*definition, std::move(arguments), name, reference.span);
     if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
     if (const std::optional<Primitive> plain = primitive_named(name))
-        return by_name_[name] = primitive(*plain);
+        return by_name_[name] = primitives_.of(*plain);
     if (const std::optional<PrimitiveKind> kind = kind_of(reference)) {
         if (const auto known = shapes_.find(name); known != shapes_.end()) return known->second;
         const std::optional<Primitive> made = lower_primitive(*kind, arguments, reference.span, scratch_);
         if (!made) return std::nullopt;
-        return shapes_[name] = primitive(*made);
+        return shapes_[name] = primitives_.of(*made);
     }
     if (const auto family = families_.find(reference.name); family != families_.end())
         return family->second.exact(arguments, reference.span, scratch_);
@@ -334,18 +335,6 @@ std::optional<ObjectId> InstLowerer::resolve(const InstReference& reference) {
     else if (by_name_.contains(use_of(reference.name)->first))
         return part_of_used(reference.name, arguments, reference.span);
     return std::nullopt;
-}
-
-ObjectId InstLowerer::primitive(const Primitive& primitive) {
-    for (; indexed_ < graph_.objects.size(); ++indexed_)
-        if (const std::optional<Primitive>& known = graph_.objects[indexed_].primitive)
-            primitives_.emplace(*known, static_cast<ObjectId>(indexed_));
-    const auto [found, fresh] = primitives_.try_emplace(primitive, 0);
-    if (!fresh) return found->second;
-    Object object;
-    object.name = name_of(primitive);
-    object.primitive = primitive;
-    return found->second = graph_.add(std::move(object));
 }
 
 // Chance

@@ -15,6 +15,7 @@
 #include "compiler/inst/ink.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
+#include "compiler/lower/primitive_objects.h"
 #include "compiler/support/counter_random.h"
 
 namespace graftal {
@@ -162,8 +163,6 @@ class InstLowerer {
     std::optional<Placement> lower_placement(const InstGroup& group);
     std::optional<Tint> lower_tints(const std::vector<InstTint>& tints);
     std::optional<ObjectId> resolve(const InstReference& reference);
-    /// The object of a primitive, as Graph::primitive() gives it, without a search.
-    ObjectId primitive(const Primitive& primitive);
     std::optional<ObjectId> variant_of(const InstDefinition& definition, std::vector<double> arguments,
                                        const std::string& name, Span use);
 
@@ -207,9 +206,8 @@ class InstLowerer {
     Diagnostics scratch_; ///< its errors
     std::set<const InstReference*> unknown_;
     std::unordered_map<const InstReference*, Primitive> meshes_;
-    std::unordered_map<std::string, ObjectId> shapes_;   ///< primitives of numbers, by their references
-    std::unordered_map<Primitive, ObjectId> primitives_; ///< of the first `indexed_` objects
-    std::size_t indexed_ = 0;
+    std::unordered_map<std::string, ObjectId> shapes_; ///< primitives of numbers, by their references
+    PrimitiveObjects primitives_{graph_};
     std::unordered_map<std::string, unsigned> repeat_numbers_; ///< counts so far, by object name
     std::set<const InstDefinition*> failed_;
     std::set<const Expression*> rounded_; ///< hues that have a note

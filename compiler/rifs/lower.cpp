@@ -4,7 +4,6 @@
 #include <map>
 #include <set>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +15,7 @@
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lower/lowering.h"
 #include "compiler/lower/model_family.h"
+#include "compiler/lower/primitive_objects.h"
 #include "compiler/primitives/primitive.h"
 #include "compiler/rifs/chances.h"
 #include "compiler/rifs/lower_orbit.h"
@@ -181,25 +181,12 @@ class RifsLowering {
         const std::size_t most = family ? family->parameters().size() : 0;
         if (!of_numbers && arguments.size() > most)
             return wrong_count(part, fmt::format("{} argument{}", most, most == 1 ? "" : "s"));
-        if (primitive) return object_of(*primitive);
+        if (primitive) return primitives_.of(*primitive);
         if (family && !arguments.empty()) return family->exact(arguments, part.master.span, diagnostics_);
         if (!of_numbers) return use->second.root;
         const std::optional<Primitive> made =
             lower_primitive(*kind, arguments, part.master.span, diagnostics_);
-        return made ? std::optional(object_of(*made)) : std::nullopt;
-    }
-
-    /// The object of a primitive, as Graph::primitive() gives it, searched for once.
-    ObjectId object_of(const Primitive& primitive) {
-        for (; searched_ < graph_.objects.size(); ++searched_)
-            if (const std::optional<Primitive>& known = graph_.objects[searched_].primitive)
-                primitives_.emplace(*known, static_cast<ObjectId>(searched_));
-        const auto [found, fresh] = primitives_.try_emplace(primitive, 0);
-        if (!fresh) return found->second;
-        Object object;
-        object.name = name_of(primitive);
-        object.primitive = primitive;
-        return found->second = graph_.add(std::move(object));
+        return made ? std::optional(primitives_.of(*made)) : std::nullopt;
     }
 
     std::nullopt_t unknown_master(const Name& name) {
@@ -342,9 +329,8 @@ class RifsLowering {
     RifsSystem system_;
     std::optional<RifsChances> chances_; ///< nothing: none are stated
     std::map<std::string_view, Use> uses_;
-    std::map<const RifsPart*, Part> parts_;              // looked up only, never walked
-    std::unordered_map<Primitive, ObjectId> primitives_; ///< of the first `searched_` objects
-    std::size_t searched_ = 0;
+    std::map<const RifsPart*, Part> parts_; // looked up only, never walked
+    PrimitiveObjects primitives_{graph_};
 };
 
 } // namespace

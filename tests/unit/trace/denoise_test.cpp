@@ -140,7 +140,7 @@ TEST(Denoise, SingleSamplesAndHostileOnesAreTakenAsTheyAre) {
         ASSERT_TRUE(std::isfinite(value));
 }
 
-/// What a pixel shows has to do with those near it alone, whatever shines elsewhere in its row and column.
+/// A pixel shows only what those near it have to do with, whatever shines elsewhere in its row and column.
 TEST(Denoise, ABrightPixelChangesNothingBeyondItsNeighbours) {
     constexpr int reach_px = 40; // of the windows, of those that fits are averaged over, and of errors
     const Sampled calm(4, wall, linear);

@@ -131,7 +131,7 @@ TEST(LeafGroup, IsMetAsItsTrianglesAlone) {
     EXPECT_GT(groups, 50u);
 }
 
-/// As they are and culled.
+/// Models as they are, and culled.
 TEST(LeafGroup, IsMetByPacketsAsByTheirRays) {
     std::mt19937_64 random(23);
     std::uniform_real_distribution<double> unit(-1, 1);

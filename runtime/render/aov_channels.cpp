@@ -14,9 +14,9 @@ namespace graftal {
 
 namespace {
 
-// Mattes in an EXR by the Cryptomatte specification 1.2.0 (Friedman and Jones): the layers CryptoObject and
-// CryptoMaterial, each with three channels of two ids and their shares, whose bits are those of 32-bit
-// floats.
+// Mattes in an EXR by the Cryptomatte specification 1.2.0 (Friedman and Jones): the layers CryptoObject,
+// CryptoInstance and CryptoMaterial, each with three channels of two ids and their shares, whose bits are
+// those of 32-bit floats. Instances may be millions and have no names, so their layer has no manifest.
 
 struct Layer {
     std::string_view name;
@@ -24,6 +24,7 @@ struct Layer {
 };
 
 constexpr Layer layers[] = {{"CryptoObject", &PixelMattes::objects},
+                            {"CryptoInstance", &PixelMattes::instances},
                             {"CryptoMaterial", &PixelMattes::materials}};
 
 constexpr std::size_t ids_a_channel = 2;
@@ -47,7 +48,7 @@ std::string hex_of(std::uint32_t id) {
     return fmt::format("{:08x}", id);
 }
 
-/// Names of the channels of both layers, CryptoObject00.R to CryptoMaterial02.A.
+/// Names of the channels of all layers, CryptoObject00.R to CryptoMaterial02.A.
 std::vector<std::string> matte_channel_names() {
     std::vector<std::string> names;
     for (const Layer& layer : layers)
@@ -71,6 +72,11 @@ std::vector<std::pair<std::string, std::string>> matte_tags(const std::vector<Pi
     constexpr std::size_t key_digits = 7;
     std::vector<std::pair<std::string, std::string>> tags;
     for (const Layer& layer : layers) {
+        const std::string key = "cryptomatte/" + hex_of(matte_id(layer.name)).substr(0, key_digits) + "/";
+        tags.insert(tags.end(), {{key + "name", std::string(layer.name)},
+                                 {key + "hash", "MurmurHash3_32"},
+                                 {key + "conversion", "uint32_to_float32"}});
+        if (layer.shares == &PixelMattes::instances) continue;
         std::set<std::uint32_t> seen;
         for (const PixelMattes& pixel : picture)
             for (const MatteShare& share : pixel.*layer.shares)
@@ -80,12 +86,8 @@ std::vector<std::pair<std::string, std::string>> matte_tags(const std::vector<Pi
             if (const std::uint32_t id = matte_id(name); seen.contains(id))
                 manifest[std::string(name)] = hex_of(id);
         // A name that is no UTF-8 must not end the picture.
-        const std::string text = manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-        const std::string key = "cryptomatte/" + hex_of(matte_id(layer.name)).substr(0, key_digits) + "/";
-        tags.insert(tags.end(), {{key + "name", std::string(layer.name)},
-                                 {key + "hash", "MurmurHash3_32"},
-                                 {key + "conversion", "uint32_to_float32"},
-                                 {key + "manifest", text}});
+        tags.emplace_back(key + "manifest",
+                          manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     }
     return tags;
 }

@@ -22,7 +22,9 @@ AovSample::AovSample(const SurfaceHit& hit, const Ray& ray, const View& view, co
     if (!met) return;
     levels = hit.levels;
     node = view.ground && hit.material == &view.ground->material ? ground_node : hit.node;
-    if (named) mattes = {matte_id(object_name(*named, node)), matte_id(material_name(*hit.material))};
+    if (!named) return;
+    const std::uint32_t object = matte_id(object_name(*named, node));
+    mattes = {object, node == ground_node ? object : hit.instance, matte_id(material_name(*hit.material))};
 }
 
 void AovSum::add(const AovSample& sample, double weight, double off_middle) {

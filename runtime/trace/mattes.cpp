@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <string>
 
 namespace graftal {
 
@@ -36,13 +37,22 @@ std::uint32_t matte_id(std::string_view name) {
     return exponent == 0 || exponent == exponent_bits ? id ^ lowest_of_exponent : id;
 }
 
+std::uint32_t matte_id(std::span<const std::uint32_t> way) {
+    std::string bytes;
+    for (const std::uint32_t number : way)
+        for (int shift = 0; shift < 32; shift += 8)
+            bytes.push_back(static_cast<char>(number >> shift & 0xff));
+    return matte_id(bytes);
+}
+
 void MatteSum::add(const MatteIds& ids, double weight) {
     add(objects_, ids.object, weight);
+    add(instances_, ids.instance, weight);
     add(materials_, ids.material, weight);
 }
 
 PixelMattes MatteSum::shares(double whole) const {
-    return {largest(objects_, whole), largest(materials_, whole)};
+    return {largest(objects_, whole), largest(instances_, whole), largest(materials_, whole)};
 }
 
 void MatteSum::add(Parts& parts, std::uint32_t id, double weight) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -11,9 +12,13 @@ namespace graftal {
 /// (Friedman and Jones, "Cryptomatte" specification 1.2.0). 0 stands for nothing, and no name has it.
 std::uint32_t matte_id(std::string_view name);
 
+/// The id of a way from the root, as numbers of instances: of their bytes, the lowest first.
+std::uint32_t matte_id(std::span<const std::uint32_t> way);
+
 /// Ids of what a sample meets; 0: nothing.
 struct MatteIds {
     std::uint32_t object = 0;   ///< the canonical object that holds the primitive
+    std::uint32_t instance = 0; ///< the way to that object
     std::uint32_t material = 0; ///< its material
 };
 
@@ -27,9 +32,9 @@ struct MatteShare {
 /// fit in is left out.
 using MatteShares = std::array<MatteShare, 6>;
 
-/// Shares of a pixel, of its objects and of its materials.
+/// Shares of a pixel, of its objects, of their instances and of its materials.
 struct PixelMattes {
-    MatteShares objects{}, materials{};
+    MatteShares objects{}, instances{}, materials{};
 };
 
 /// The samples of a pixel by their ids.
@@ -49,7 +54,7 @@ class MatteSum {
     static void add(Parts& parts, std::uint32_t id, double weight);
     static MatteShares largest(Parts parts, double whole);
 
-    Parts objects_, materials_;
+    Parts objects_, instances_, materials_;
 };
 
 } // namespace graftal

@@ -55,6 +55,7 @@ class Worker {
                AovPicture* aovs) {
         aovs_ = aovs;
         named_ = aovs && !aovs->mattes.empty() ? &cut_ : nullptr;
+        traversal_.tell_instances(named_ != nullptr);
         window_ = window;
         if (sampling.block > 1) return trace_blocks(sampling.block, tile, picture);
         const Tile seen = common(tile, window);

@@ -67,7 +67,7 @@ void add_render(CLI::App& app, Options& options) {
         ->needs("--size");
     app.add_flag("--aovs", options.render.aovs,
                  "With an EXR: write the channels A, coverage, Z, normal, albedo, id and "
-                 "levels too, and Cryptomatte's mattes of objects and materials");
+                 "levels too, and Cryptomatte's mattes of objects, instances and materials");
     app.add_flag(
         "--transparent", options.render.compile.view.transparent,
         "Leave the background clear: alpha is straight in a PNG, premultiplied in an EXR. Haze and the "

@@ -71,8 +71,9 @@ class ModelBuilder {
         add(edge, {});
     }
 
-    /// Fills in what the edge says of its look. `holder`: of a primitive.
-    void add(const TraceEdge& edge, TraceLook look, std::uint32_t holder = TraceLook::none) {
+    /// Fills in what the edge says of its look. `holder`: of a primitive. `place`: TraceModel::places.
+    void add(const TraceEdge& edge, TraceLook look, std::uint32_t holder = TraceLook::none,
+             std::uint32_t place = 0) {
         look.child = edge.child;
         look.levels = edge.levels;
         look.child_has_mean = model_.source(edge.child).terminal;
@@ -80,6 +81,7 @@ class ModelBuilder {
         if (node != TraceLook::none) look.node = model_.layers.source[node];
         model_.edges.push_back(edge);
         model_.looks.push_back(look);
+        model_.places.push_back(place);
         meter_.add();
     }
 
@@ -149,8 +151,8 @@ class ModelBuilder {
                                const std::vector<Box>& boxes, std::size_t apart) {
         std::vector<BoxedItem> items;
         for (std::size_t i = 0; i < edges.size(); ++i) {
-            const std::uint32_t number =
-                add_part(id, {edges[i], boxes[i], length_in_turns(edges[i].node_from_child.linear)});
+            const std::uint32_t number = add_part(id, {edges[i], boxes[i], static_cast<std::uint32_t>(i),
+                                                       length_in_turns(edges[i].node_from_child.linear)});
             const bool endless = cut_.nodes[edges[i].child].unbounded;
             node.has_endless_operands = node.has_endless_operands || endless;
             if (i >= apart && !endless) items.emplace_back(model_.edges[number].box, number);
@@ -224,6 +226,7 @@ class ModelBuilder {
     struct Part {
         DetailEdge edge;
         Box box;
+        std::uint32_t place = 0; ///< TraceModel::places
         double turns = 1;
         std::optional<NodeId> holder = {}; ///< of a primitive, unless it is the node itself
     };
@@ -244,7 +247,7 @@ class ModelBuilder {
                 part.edge.stretch * graph_from_child.linear[0][0] * frame_from_graph.linear[0][0]);
         edge.find_upright();
         edge.box = transformed(frame_from_graph, part.box);
-        add(edge, look, part.holder.value_or(id));
+        add(edge, look, part.holder.value_or(id), part.place);
         return static_cast<std::uint32_t>(model_.edges.size() - 1);
     }
 
@@ -253,12 +256,14 @@ class ModelBuilder {
     std::vector<Part> parts_of(const std::vector<DetailEdge>& edges, const std::vector<Box>& boxes) {
         constexpr std::size_t most_parts = 4096;
         std::vector<Part> parts;
+        std::uint32_t places = 0;
         for (std::size_t i = 0; i < edges.size(); ++i) {
             meter_.add();
             if (is_small_group(edges[i].child) && parts.size() + edges.size() < most_parts)
-                add_group(edges[i], parts);
+                add_group(edges[i], parts, places);
             else
-                parts.push_back({edges[i], boxes[i], length_in_turns(edges[i].node_from_child.linear)});
+                parts.push_back(
+                    {edges[i], boxes[i], places++, length_in_turns(edges[i].node_from_child.linear)});
         }
         std::stable_partition(parts.begin(), parts.end(),
                               [&](const Part& part) { return cut_.nodes[part.edge.child].unbounded; });
@@ -272,7 +277,9 @@ class ModelBuilder {
                !node.sealed && !node.cullable && !node.is_combined();
     }
 
-    void add_group(const DetailEdge& group, std::vector<Part>& parts) const {
+    /// The group's primitives are in one place.
+    void add_group(const DetailEdge& group, std::vector<Part>& parts, std::uint32_t& places) const {
+        const std::uint32_t place = places++;
         for (const DetailEdge& member : cut_.nodes[group.child].edges) {
             DetailEdge edge = member;
             edge.node_from_child = group.node_from_child * member.node_from_child;
@@ -284,12 +291,13 @@ class ModelBuilder {
             edge.levels = group.levels + member.levels;
             const auto primitive = cut_.nodes[edge.child].primitive;
             if (primitive)
-                parts.push_back({edge, box_of_image(*primitive, edge.node_from_child),
+                parts.push_back({edge, box_of_image(*primitive, edge.node_from_child), place,
                                  length_in_turns(member.node_from_child.linear), group.child});
             else if (is_small_group(edge.child))
-                add_group(edge, parts);
+                add_group(edge, parts, places);
             else
-                parts.push_back({edge, transformed(edge.node_from_child, bounds_.node[edge.child]), 1});
+                parts.push_back(
+                    {edge, transformed(edge.node_from_child, bounds_.node[edge.child]), places++, 1});
         }
     }
 

@@ -199,6 +199,9 @@ struct TraceModel {
     std::vector<TraceNode> nodes; ///< by number of layers.cut.nodes
     std::vector<TraceEdge> edges; ///< the first leads to the root, from world space
     std::vector<TraceLook> looks; ///< by edge
+    /// Number of the instance among those of its node, by edge without those of unrollings. Primitives of a
+    /// group that is spelt out have one.
+    std::vector<std::uint32_t> places;
     std::vector<BoxNode> boxes;
     std::vector<PackedNode> packed_boxes; ///< of runs
     std::vector<Unrolling> unrollings;

@@ -22,7 +22,8 @@ struct SurfaceHit {
     Vec3 to_far_side{0.0};
     /// Number in the prepared graph of the last node on the way from the root that is no primitive.
     std::uint32_t node = no_node;
-    std::uint32_t levels = 0; ///< levels that the way has used up (graph.h, "Levels")
+    std::uint32_t levels = 0;   ///< levels that the way has used up (graph.h, "Levels")
+    std::uint32_t instance = 0; ///< the id of the way (mattes.h), where it is asked for
 
     static constexpr std::uint32_t no_node = UINT32_MAX;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include <glm/geometric.hpp>
 
@@ -11,6 +12,7 @@
 #include "compiler/primitives/solid.h"
 #include "compiler/primitives/texture_space.h"
 #include "compiler/support/stretch.h"
+#include "runtime/trace/mattes.h"
 #include "runtime/trace/model/surface_normal.h"
 #include "runtime/trace/shade/patterns.h"
 #include "runtime/trace/traverse/even.h"
@@ -128,10 +130,12 @@ void Traversal::show_best(SurfaceHit& hit) {
     for (const std::uint32_t edge : way_)
         length += model_.looks[edge & ~from_cut].length;
     more_work_ += RayWork::shaded * length;
-    if (best_.proxy_node != no_edge || model_.projection.error_px() > SelfShadows::lit_as_px)
+    if (tells_instances_ || best_.proxy_node != no_edge ||
+        model_.projection.error_px() > SelfShadows::lit_as_px)
         for (const std::uint32_t edge : way_)
             append_to_path(edge);
     surface_at_best(hit);
+    if (tells_instances_) hit.instance = instance_at_best();
     more_work_ += RayWork::pattern_wave * hit.material->pattern.waves();
 }
 
@@ -151,6 +155,22 @@ void Traversal::append_to_path(std::uint32_t edge) {
     }
     append_to_path(whole.before);
     append_to_path(whole.last);
+}
+
+/// The id of the way to the last object, by the place of each instance in its object. An object's own
+/// primitives, and a node that stands for some of its instances, are no new object.
+std::uint32_t Traversal::instance_at_best() {
+    instance_way_.clear();
+    std::size_t length = 0;
+    std::uint32_t object = TraceLook::none;
+    for (const std::uint32_t step : path_) {
+        const TraceLook& look = model_.looks[step & ~from_cut];
+        instance_way_.push_back(model_.places[step & ~from_cut] | (step & from_cut));
+        if (look.node == TraceLook::none || (look.node == object && look.levels == 0)) continue;
+        object = look.node;
+        length = instance_way_.size();
+    }
+    return matte_id(std::span(instance_way_).first(length));
 }
 
 const TraceMesh& Traversal::shell_of(const Frame& frame) {

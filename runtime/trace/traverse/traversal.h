@@ -58,6 +58,9 @@ class Traversal final : public Surfaces {
     /// Whether several rays may go together at all: in even models, whose rays keep their directions.
     bool takes_packets() const { return packet_ != nullptr; }
 
+    /// Whether hits say of what instance they are (SurfaceHit::instance).
+    void tell_instances(bool tells) { tells_instances_ = tells; }
+
     /// Begins with another ray of the camera. It, and all rays that it makes, may go into some times as many
     /// parts as one ray may: light that goes through thousands of panes would not come to an end.
     void begin_path() { path_limit_ = visits_ + most_full_rays * model_.most_visits; }
@@ -235,6 +238,7 @@ class Traversal final : public Surfaces {
     void keep_way(std::uint32_t frame_number);
     /// Fills in what is seen at the best hit.
     void show_best(SurfaceHit& hit);
+    std::uint32_t instance_at_best();
     std::uint32_t run_packet(std::span<const Ray> rays, const RayRange& range, std::uint32_t& to_go_alone);
     void show_packed(std::size_t lane, const Ray& ray, std::span<SurfaceHit> hits);
     template<template<Instructions, bool> typename AnyKernel, bool any, typename... From>
@@ -320,6 +324,8 @@ class Traversal final : public Surfaces {
     std::vector<std::uint32_t>
         way_; ///< edges through the frames to the best hit, those from cut nodes marked
     std::vector<std::uint32_t> path_; ///< of the graph, likewise, once the ray is done
+    bool tells_instances_ = false;
+    std::vector<std::uint32_t> instance_way_; ///< by its numbers, once the ray is done
     std::uint64_t visits_ = 0;
     std::uint64_t boxes_ = 0;     ///< tests of boxes (RayWork::boxes)
     std::uint64_t more_work_ = 0; ///< besides both

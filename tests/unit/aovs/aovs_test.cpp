@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 #include <numbers>
+#include <set>
 #include <sstream>
 
 #include <OpenImageIO/imageio.h>
@@ -123,7 +124,7 @@ TEST_F(Aovs, AreTheChannelsThatTheDocumentationNames) {
         EXPECT_EQ(samples.size(), 64u * 48) << name;
     }
     std::erase_if(names, [](const std::string& name) { return name.starts_with("Crypto"); });
-    EXPECT_EQ(channels.of.size() - names.size(), 24u); // mattes_test.cpp
+    EXPECT_EQ(channels.of.size() - names.size(), 36u); // mattes, below
     EXPECT_THAT(names, testing::UnorderedElementsAre("R", "G", "B", "A", "coverage", "Z", "normal.X",
                                                      "normal.Y", "normal.Z", "albedo.R", "albedo.G",
                                                      "albedo.B", "id", "levels"));
@@ -271,13 +272,14 @@ TEST(Mattes, IdsAreThoseOfTheSpecification) {
 TEST(Mattes, TheLargestSharesCome) {
     MatteSum sum;
     for (std::uint32_t id = 1; id <= 8; ++id)
-        sum.add({id, 9}, id);
+        sum.add({id, 10, 9}, id);
     sum.add({}, 4); // a sample that meets nothing
     const PixelMattes mattes = sum.shares(40);
     for (std::uint32_t i = 0; i < 6; ++i) {
         EXPECT_EQ(mattes.objects[i].id, 8 - i);
         EXPECT_FLOAT_EQ(mattes.objects[i].share, static_cast<float>(8 - i) / 40);
     }
+    EXPECT_EQ(mattes.instances[0].id, 10u);
     EXPECT_EQ(mattes.materials[0].id, 9u);
     EXPECT_FLOAT_EQ(mattes.materials[0].share, 0.9f);
     EXPECT_EQ(mattes.materials[1].id, 0u);
@@ -306,6 +308,78 @@ TEST_F(Aovs, MattesShareEachPixelAmongWhatItShows) {
             shared += ball > 0 && cube > 0;
         }
     EXPECT_GT(shared, 20);
+}
+
+TEST(Mattes, AWayHasTheIdOfItsBytes) {
+    const std::uint32_t way[] = {0x74736574}; // "test"
+    EXPECT_EQ(matte_id(way), matte_id("test"));
+    EXPECT_NE(matte_id(std::vector<std::uint32_t>{1, 2}), matte_id(std::vector<std::uint32_t>{2, 1}));
+}
+
+/// Three trees of two leaves, in a row: one object of two parts in six instances.
+const std::string six_leaves = "canonical object leaf { instance: sphere scale: 0.2 translate: 0, 0.25, 0\n"
+                               "  instance: cube scale: 0.2 translate: 0, -0.25, 0 }\n"
+                               "canonical object tree { instance: leaf translate: -0.3, 0, 0\n"
+                               "  instance: leaf translate: 0.3, 0, 0 }\n"
+                               "object m { instance: tree translate: -1.2, 0, 0\n  instance: tree\n"
+                               "  instance: tree translate: 1.2, 0, 0 }\n";
+
+/// By instance, the middles of the columns of its pixels, in the units of a picture four wide.
+std::map<std::uint32_t, std::set<double>> columns_of_instances(const Channels& channels) {
+    std::map<std::uint32_t, std::set<double>> columns;
+    for (int j = 0; j < channels.height; ++j)
+        for (int i = 0; i < channels.width; ++i)
+            if (channels.at("coverage", i, j) > 0)
+                columns[std::bit_cast<std::uint32_t>(channels.at("CryptoInstance00.R", i, j))].insert(
+                    4.0 * (i + 0.5) / channels.width - 2);
+    return columns;
+}
+
+TEST_F(Aovs, EachInstanceOfAnObjectHasAMatte) {
+    const Channels channels = drawn(parallel + six_leaves);
+    const auto columns = columns_of_instances(channels);
+    ASSERT_EQ(columns.size(), 6u); // both parts of a leaf have one
+    std::set<double> middles;
+    for (const auto& [id, places] : columns) {
+        EXPECT_LT(*places.rbegin() - *places.begin(), 0.45);
+        middles.insert(std::round(5 * (*places.rbegin() + *places.begin())) / 10);
+    }
+    EXPECT_THAT(middles, testing::ElementsAre(-1.5, -0.9, -0.3, 0.3, 0.9, 1.5));
+    EXPECT_FALSE(channels.matte_tags.contains("CryptoInstance/manifest"));
+
+    const Channels moved =
+        drawn("camera { location: 0.4,0.1,5 look_at: 0.4,0,0 orthographic width: 4.4 }\n" + six_leaves);
+    std::set<std::uint32_t> ids, moved_ids;
+    for (const auto& [id, places] : columns)
+        ids.insert(id);
+    for (const auto& [id, places] : columns_of_instances(moved))
+        moved_ids.insert(id);
+    EXPECT_EQ(moved_ids, ids);
+}
+
+/// Copies of an unending object differ too, and shares of instances add up as those of objects do.
+TEST_F(Aovs, MattesOfInstancesShareEachPixel) {
+    options_.antialias = 3;
+    const Channels channels = drawn("camera { location: 0,2,5 look_at: 0,0,0 orthographic width: 4 }\n"
+                                    "ground { height: -1.5 }\n"
+                                    "object m { instance: sphere scale: 0.5\n"
+                                    "  instance: m scale: 0.5 translate: 1, 0, 0\n"
+                                    "  instance: m scale: 0.5 translate: -1, 0.5, 0 }\n");
+    std::set<std::uint32_t> ids;
+    for (int j = 0; j < 48; ++j)
+        for (int i = 0; i < 64; ++i) {
+            float instances = 0, objects = 0;
+            for (const std::string channel : {"00.G", "00.A", "01.G", "01.A", "02.G", "02.A"}) {
+                instances += channels.at("CryptoInstance" + channel, i, j);
+                objects += channels.at("CryptoObject" + channel, i, j);
+            }
+            EXPECT_NEAR(instances, channels.at("coverage", i, j), 0.2);
+            EXPECT_NEAR(objects, channels.at("coverage", i, j), 1e-6);
+            if (channels.at("CryptoInstance00.G", i, j) == 1)
+                ids.insert(std::bit_cast<std::uint32_t>(channels.at("CryptoInstance00.R", i, j)));
+        }
+    EXPECT_GE(ids.size(), 8u); // the ground, and spheres of three levels
+    EXPECT_TRUE(ids.contains(matte_id("(ground)")));
 }
 
 /// A mask of what nothing hides is the picture of it alone.

@@ -18,7 +18,7 @@ namespace graftal {
 
 namespace {
 
-constexpr std::uint64_t most_steps_taken = 200'000'000; // some two seconds
+constexpr std::uint64_t most_steps_taken = 40'000'000; // less than a second
 constexpr std::size_t most_parts_compared = 1000;       // each is held against each
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

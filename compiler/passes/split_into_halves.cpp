@@ -107,7 +107,7 @@ using Halves = std::vector<bool>;
 class Halving {
   public:
     Halving(const Graph& graph, const Components& components, const std::vector<ObjectBounds>& bounds)
-        : graph_(graph), components_(components), shape_(graph, components, bounds), pairs_(shape_) {}
+        : graph_(graph), shape_(graph, components, bounds), pairs_(shape_) {}
 
     Halves halves(ObjectId id) {
         const std::size_t count = graph_.objects[id].instances.size();
@@ -132,7 +132,6 @@ class Halving {
 
   private:
     const Graph& graph_;
-    const Components& components_;
     const GraphShape shape_;
     CongruentPairs<GraphShape> pairs_;
     std::size_t checks_ = 0;

@@ -18,9 +18,6 @@ struct FrameRate {
 /// The fastest that viewers of GIF show: quicker frames are slowed down by them.
 inline constexpr FrameRate fastest_gif{5000};
 
-/// Pixels that it dithers in a second: a film may take longer to put together than to draw.
-inline constexpr double gif_pixels_a_second = 1.1e6;
-
 /// Called before each frame is added; false gives up.
 using OnFrame = std::function<bool(std::size_t frame)>;
 
@@ -31,8 +28,8 @@ using OnFrame = std::function<bool(std::size_t frame)>;
 Status write_animated_png(const std::string& path, const std::vector<std::string>& frames, FrameRate rate,
                           const OnFrame& on_frame);
 
-/// GIF, by OpenImageIO: 256 colours a frame, dithered by one thread. A frame lasts a whole number of
-/// hundredths of a second.
+/// GIF, by giflib: 255 colours for all frames (gif_palette.h). A frame lasts a whole number of hundredths of a
+/// second.
 Status write_gif(const std::string& path, const std::vector<std::string>& frames, FrameRate rate,
                  const OnFrame& on_frame);
 

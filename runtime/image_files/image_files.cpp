@@ -197,18 +197,6 @@ Status write_rows(const std::string& path, const RowShape& shape, RowSource& row
     return error.empty() ? pending.commit() : failure("write", path, error);
 }
 
-Status write_gif(const std::string& path, const std::vector<std::string>& frames, FrameRate rate,
-                 const OnFrame& on_frame) {
-    if (!module().files) return failure("write", path, module().error);
-    const int delay_hundredths = static_cast<int>(100 / rate.per_second() + 0.5);
-    PendingFile pending(path);
-    if (!pending.status().ok()) return pending.status();
-    const std::string error =
-        module().files->write_gif(pending.temporary_path(), frames, delay_hundredths, on_frame);
-    if (error == "interrupted") return Status::failure(error);
-    return error.empty() ? pending.commit() : failure("write", path, error);
-}
-
 Status write_palette(const PendingFile& pending, int width, int height, std::span<const Rgb> pixels) {
     const auto size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     GRAFTAL_CHECK(!pixels.empty() && pixels.size() <= size, pending.path());

@@ -176,7 +176,6 @@ class Animation {
         for (std::size_t i = 0; i < missing.size(); ++i) {
             const Stopwatch watch;
             std::optional<double> seconds_left = clock.seconds_left(missing.size() - i);
-            if (seconds_left) *seconds_left += assembling_seconds();
             if (!draw_frame(missing[i], seconds_left)) return false;
             clock.add(watch.seconds());
             drawn_.push_back(missing[i]);
@@ -186,17 +185,9 @@ class Animation {
             if (seconds.size() == estimating_frames && missing.size() > estimating_frames &&
                 options_.on_estimate)
                 options_.on_estimate(
-                    {missing.size(),
-                     mean_of(seconds, sampled) * static_cast<double>(missing.size()) + assembling_seconds()});
+                    {missing.size(), mean_of(seconds, sampled) * static_cast<double>(missing.size())});
         }
         return true;
-    }
-
-    /// Seconds for putting the frames together, which counts beside drawing them for a GIF alone.
-    double assembling_seconds() const {
-        if (kind_ != AnimationKind::gif || options_.only) return 0;
-        const ImageSize size = framing_->size();
-        return static_cast<double>(options_.frames) * size.width * size.height / gif_pixels_a_second;
     }
 
     /// A film whose models change makes some of them once more for its samples: a short one is not worth

@@ -16,7 +16,8 @@ namespace {
 
 // Mattes in an EXR by the Cryptomatte specification 1.2.0 (Friedman and Jones): the layers CryptoObject,
 // CryptoInstance and CryptoMaterial, each with three channels of two ids and their shares, whose bits are
-// those of 32-bit floats. Instances may be millions and have no names, so their layer has no manifest.
+// those of 32-bit floats. Each layer has a manifest, without which Blender takes none, but instances have no
+// names: they may be millions.
 
 struct Layer {
     std::string_view name;
@@ -31,16 +32,17 @@ constexpr std::size_t ids_a_channel = 2;
 
 std::set<std::string_view> names_of(const Layer& layer, const DetailGraph& cut, const View& view) {
     std::set<std::string_view> names;
-    if (layer.shares == &PixelMattes::objects) {
-        for (const DetailNode& node : cut.nodes)
-            names.insert(node.name);
-        names.insert(object_name(cut, ground_node));
+    if (layer.shares == &PixelMattes::materials) {
+        for (const Material& material : cut.materials)
+            names.insert(material_name(material));
+        if (view.ground) names.insert(material_name(view.ground->material));
+        names.insert(material_name({}));
         return names;
     }
-    for (const Material& material : cut.materials)
-        names.insert(material_name(material));
-    if (view.ground) names.insert(material_name(view.ground->material));
-    names.insert(material_name({}));
+    names.insert(object_name(cut, ground_node));
+    if (layer.shares == &PixelMattes::objects)
+        for (const DetailNode& node : cut.nodes)
+            names.insert(node.name);
     return names;
 }
 
@@ -72,11 +74,6 @@ std::vector<std::pair<std::string, std::string>> matte_tags(const std::vector<Pi
     constexpr std::size_t key_digits = 7;
     std::vector<std::pair<std::string, std::string>> tags;
     for (const Layer& layer : layers) {
-        const std::string key = "cryptomatte/" + hex_of(matte_id(layer.name)).substr(0, key_digits) + "/";
-        tags.insert(tags.end(), {{key + "name", std::string(layer.name)},
-                                 {key + "hash", "MurmurHash3_32"},
-                                 {key + "conversion", "uint32_to_float32"}});
-        if (layer.shares == &PixelMattes::instances) continue;
         std::set<std::uint32_t> seen;
         for (const PixelMattes& pixel : picture)
             for (const MatteShare& share : pixel.*layer.shares)
@@ -86,8 +83,12 @@ std::vector<std::pair<std::string, std::string>> matte_tags(const std::vector<Pi
             if (const std::uint32_t id = matte_id(name); seen.contains(id))
                 manifest[std::string(name)] = hex_of(id);
         // A name that is no UTF-8 must not end the picture.
-        tags.emplace_back(key + "manifest",
-                          manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+        const std::string text = manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+        const std::string key = "cryptomatte/" + hex_of(matte_id(layer.name)).substr(0, key_digits) + "/";
+        tags.insert(tags.end(), {{key + "name", std::string(layer.name)},
+                                 {key + "hash", "MurmurHash3_32"},
+                                 {key + "conversion", "uint32_to_float32"},
+                                 {key + "manifest", text}});
     }
     return tags;
 }

@@ -291,12 +291,30 @@ class Worker {
                 set(picture, x, y, meter.mean());
                 if (aovs_) set(x, y, sum);
             }
+        show_neighbours(sampling, tile, picture);
         return true;
     }
 
-    /// Nothing but samples can tell what a pixel shows.
+    /// With AOVs all have some: nothing but samples can tell what a pixel shows.
     bool has_samples(const Sampling& sampling, int x, int y) const {
         return sampling.sparse == 1 || aovs_ || ((x + y) % 2 == 0 && (sampling.sparse == 2 || x % 2 == 0));
+    }
+
+    /// Pixels without samples show those of a neighbour in the tile, until their noise is taken out.
+    void show_neighbours(const Sampling& sampling, const Tile& tile, Image& picture) const {
+        const int right = tile.x + tile.width, below = tile.y + tile.height;
+        for (int y = tile.y; y < below; ++y)
+            for (int x = tile.x; x < right; ++x)
+                for (const auto& [dx, dy] : {std::pair(-1, 0), {0, -1}, {-1, -1}, {1, 0}, {0, 1}, {1, 1}}) {
+                    if (has_samples(sampling, x, y)) break;
+                    const int i = x + dx, j = y + dy;
+                    if (i < tile.x || i >= right || j < tile.y || j >= below || !has_samples(sampling, i, j))
+                        continue;
+                    std::copy_n(
+                        picture.pixels.begin() + 3 * static_cast<std::ptrdiff_t>(index_in_window(i, j)), 3,
+                        picture.pixels.begin() + 3 * static_cast<std::ptrdiff_t>(index_in_window(x, y)));
+                    break;
+                }
     }
 
     std::uint64_t seed_of(int x, int y) const {

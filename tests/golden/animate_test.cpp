@@ -355,18 +355,6 @@ TEST_F(Animate, VideosPlay) {
 }
 
 /// Every command of docs/animate.md works; one small frame of each is enough.
-// A herb's film of 26 seconds took 74: OpenImageIO dithers a million pixels of a GIF a second.
-TEST_F(Animate, ItsEstimateCountsPuttingAGifTogether) {
-    const auto estimate = [&](const std::string& output) {
-        return shell("timeout -s INT 4 \"$graftal\" animate " + weed +
-                     "--frames 100 --size 1280x720 --antialias off --plain-light --engine native -o " +
-                     output)
-            .err;
-    };
-    EXPECT_THAT(estimate("a.gif"), testing::ContainsRegex("100 frames take about [0-9]+ min"));
-    EXPECT_THAT(estimate("b.png"), testing::ContainsRegex("100 frames take about [0-9]+ s"));
-}
-
 TEST_F(Animate, CommandsOfThePageWork) {
     const std::string mark = "\n    graftal animate ";
     std::string page;

@@ -345,7 +345,7 @@ TEST_F(Aovs, EachInstanceOfAnObjectHasAMatte) {
         middles.insert(std::round(5 * (*places.rbegin() + *places.begin())) / 10);
     }
     EXPECT_THAT(middles, testing::ElementsAre(-1.5, -0.9, -0.3, 0.3, 0.9, 1.5));
-    EXPECT_FALSE(channels.matte_tags.contains("CryptoInstance/manifest"));
+    EXPECT_EQ(channels.matte_tags.at("CryptoInstance/manifest"), "{}"); // Blender asks for one
 
     const Channels moved =
         drawn("camera { location: 0.4,0.1,5 look_at: 0.4,0,0 orthographic width: 4.4 }\n" + six_leaves);

@@ -1,9 +1,11 @@
 #include "runtime/image_files/animation.h"
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 
+#include <gif_lib.h>
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
@@ -123,6 +125,83 @@ TEST_F(AnimationFiles, GifHoldsTheFramesNearly) {
     EXPECT_LT(compare_images(first, expected).mean, 0.02);
 }
 
+/// The frames of a GIF as a viewer shows them, and by frame the number of pixels that it draws.
+struct ShownFrames {
+    std::vector<Image> frames;
+    std::vector<int> drawn;
+};
+
+ShownFrames shown_frames(const std::string& path) {
+    ShownFrames shown;
+    GifFileType* gif = DGifOpenFileName(path.c_str(), nullptr);
+    EXPECT_TRUE(gif && DGifSlurp(gif) == GIF_OK) << path;
+    if (!gif) return shown;
+    Image canvas{gif->SWidth, gif->SHeight, 3, {}};
+    canvas.pixels.resize(static_cast<std::size_t>(3 * canvas.width * canvas.height));
+    for (int i = 0; i < gif->ImageCount; ++i) {
+        const SavedImage& image = gif->SavedImages[i];
+        GraphicsControlBlock control;
+        EXPECT_EQ(DGifSavedExtensionToGCB(gif, i, &control), GIF_OK);
+        EXPECT_EQ(image.ImageDesc.ColorMap, nullptr) << "one palette for all";
+        int drawn = 0;
+        for (int k = 0; k < image.ImageDesc.Width * image.ImageDesc.Height; ++k) {
+            if (image.RasterBits[k] == control.TransparentColor) continue;
+            ++drawn;
+            const GifColorType& colour = gif->SColorMap->Colors[image.RasterBits[k]];
+            const int x = image.ImageDesc.Left + k % image.ImageDesc.Width;
+            const int y = image.ImageDesc.Top + k / image.ImageDesc.Width;
+            float* pixel = canvas.pixels.data() + 3 * (y * canvas.width + x);
+            for (const int level : {colour.Red, colour.Green, colour.Blue})
+                *pixel++ = static_cast<float>(level) / 255.0f;
+        }
+        shown.frames.push_back(canvas);
+        shown.drawn.push_back(drawn);
+    }
+    DGifCloseFile(gif, nullptr);
+    return shown;
+}
+
+/// Palettes by frame made a flower's heart white, pink and olive in turn, and left petals in the sky.
+TEST_F(AnimationFiles, WhatStaysKeepsItsColoursInAGif) {
+    const FrameStore store(directory_.path(), 4);
+    constexpr float red[] = {1.0f, 0.1f, 0.1f};
+    std::vector<Image> pictures;
+    for (int number = 0; number < 4; ++number) {
+        pictures.push_back(picture(3));
+        for (int y = 8; y < 14; ++y) // a red square that moves
+            for (int x = 7 * number + 4; x < 7 * number + 10; ++x)
+                std::copy_n(std::begin(red), 3, pictures.back().pixels.begin() + 3 * (y * width + x));
+        ASSERT_TRUE(
+            write_image(store.path(static_cast<std::size_t>(number)), pictures.back(), SampleFormat::srgb8)
+                .ok());
+    }
+    ASSERT_TRUE(write_gif(path("a.gif"), store.paths(), {2500}, [](auto) { return true; }).ok());
+    const ShownFrames shown = shown_frames(path("a.gif"));
+    ASSERT_EQ(shown.frames.size(), 4u);
+    EXPECT_EQ(shown.drawn.front(), width * height);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const ImageDifference apart = compare_images(shown.frames[i], pictures[i]);
+        EXPECT_LT(apart.mean, 0.015) << i; // of all colours that there are
+        EXPECT_LT(apart.max, 0.12) << i;
+        EXPECT_LE(shown.drawn[i],
+                  i == 0 ? width * height : 2 * 36); // the square, where it is and where it was
+    }
+}
+
+TEST_F(AnimationFiles, AFilmOfOneColourIsThat) {
+    const FrameStore store(directory_.path(), 2);
+    Image plain = picture(0);
+    for (std::size_t i = 0; i < plain.pixels.size(); ++i)
+        plain.pixels[i] = static_cast<float>(i % 3 * 50) / 255.0f;
+    for (std::size_t i = 0; i < 2; ++i)
+        ASSERT_TRUE(write_image(store.path(i), plain, SampleFormat::srgb8).ok());
+    ASSERT_TRUE(write_gif(path("a.gif"), store.paths(), {2500}, [](auto) { return true; }).ok());
+    const ShownFrames shown = shown_frames(path("a.gif"));
+    ASSERT_EQ(shown.frames.size(), 2u);
+    EXPECT_EQ(shown.frames.back(), plain);
+    EXPECT_EQ(shown.drawn.back(), 0);
+}
+
 TEST_F(AnimationFiles, FailuresLeaveNoFile) {
     const FrameStore store(directory_.path(), 3);
     std::vector<std::string> frames = write_frames(store);
@@ -232,7 +311,7 @@ class SmallFiles {
     void (*handler_)(int);
 };
 
-/// OpenImageIO's own files take bytes that find no room without a word, and half a picture would be renamed.
+/// Files may take bytes that find no room without a word, and half a picture would be renamed.
 TEST_F(AnimationFiles, NoRoomIsAFailure) {
     const FrameStore store(directory_.path(), 2);
     const std::vector<std::string> frames = write_frames(store);

@@ -365,7 +365,7 @@ TEST(Reroot, LightsGroundAndHazeFollow) {
     EXPECT_LT(glm::distance(zoomed("1e100").lights[0].location, Vec3(0, 1, 0)), 1e-12);
     EXPECT_TRUE(zoomed("1e100").lights[1].sun);
     for (const char* const zoom : {"4", "1e100", "1e400"}) {
-        const Light& at_focus = zoomed(zoom).lights[2];
+        const Light at_focus = zoomed(zoom).lights[2];
         EXPECT_EQ(at_focus.location, Vec3(0.0)) << zoom;
         EXPECT_FALSE(at_focus.sun) << zoom;
         EXPECT_TRUE(std::isfinite(at_focus.a.z)) << zoom;

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <set>
+#include <map>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "compiler/editing/chance_spread.h"
 #include "compiler/editing/rounding.h"
 #include "compiler/graph/run.h"
 #include "compiler/languages/lower.h"
@@ -38,8 +41,9 @@ constexpr int most_drag_steps = 6;
 struct Candidate {
     Span span;
     double value = 0;
-    std::size_t rules_up = 0; ///< between its rule, or the first that reads it, and the part
-    Vec3 slope{0.0};          ///< of the point, by the number
+    std::size_t rules_up = 0;  ///< between its rule, or the first that reads it, and the part
+    bool only_spreads = false; ///< chance, wherever it is read (chance_spread.h)
+    Vec3 slope{0.0};           ///< of the point, by the number
 };
 
 /// The place that a part has in a graph.
@@ -70,6 +74,7 @@ std::optional<PartPlace> part_place(const Graph& graph, const std::vector<std::u
 
 /// The string of a block, and the place that instances of its modules have.
 struct Rule {
+    const LsysBlock* block = nullptr;
     const LsysString* string = nullptr;
     Span span;
 };
@@ -77,32 +82,24 @@ struct Rule {
 std::vector<Rule> rules_of(const LsysFile& tree) {
     std::vector<Rule> rules;
     for (const LsysBlock& block : tree.blocks) {
-        if (block.axiom) rules.push_back({&*block.axiom, block.axiom->span});
+        if (block.axiom) rules.push_back({&block, &*block.axiom, block.axiom->span});
         for (const auto* productions : {&block.productions, &block.interpret, &block.decompose})
             for (const LsysProduction& production : *productions)
-                rules.push_back({&production.successor, production.span});
+                rules.push_back({&block, &production.successor, production.span});
     }
     return rules;
 }
 
-bool reads(const Expression& expression, std::string_view name) {
-    return (expression.kind == Expression::Kind::name && expression.text == name) ||
-           std::ranges::any_of(expression.operands, [&](const Expression& one) { return reads(one, name); });
-}
-
 /// Other settings, such as the width, bring no part to another place.
-bool is_of_place(const ModelParameter& parameter) {
-    return parameter.kind != ModelParameter::Kind::setting || parameter.name == "angle" ||
-           parameter.name == "step";
+bool is_setting_of_place(const ModelParameter& parameter) {
+    return parameter.kind == ModelParameter::Kind::setting &&
+           (parameter.name == "angle" || parameter.name == "step");
 }
 
 /// A turn or a move without an argument reads the setting of the block.
-bool reads(const LsysString& string, const ModelParameter& parameter) {
-    return std::ranges::any_of(string.modules, [&](const LsysModule& module) {
-        if (parameter.kind == ModelParameter::Kind::setting)
-            return module.parameters.empty() && turtle_command(module.symbol) != TurtleCommand::none;
-        return std::ranges::any_of(module.parameters,
-                                   [&](const Expression& one) { return reads(one, parameter.name); });
+bool reads_setting(const LsysString& string) {
+    return std::ranges::any_of(string.modules, [](const LsysModule& module) {
+        return module.parameters.empty() && turtle_command(module.symbol) != TurtleCommand::none;
     });
 }
 
@@ -133,12 +130,10 @@ class Dragger {
         if (part_.number)
             std::erase_if(candidates, [&](const Candidate& one) { return one.span.begin != *part_.number; });
         if (candidates.size() > most_tried) candidates.resize(most_tried);
-        for (Candidate& candidate : candidates)
-            find_slope(candidate);
-        std::erase_if(candidates, [&](const Candidate& one) { return !(cost(one) < 1); });
-        std::ranges::stable_sort(candidates, {}, [&](const Candidate& one) { return cost(one); });
-        for (const Candidate& candidate : candidates)
-            if (auto change = change_of(candidate)) return *std::move(change);
+        const auto spreading = std::ranges::find(candidates, true, &Candidate::only_spreads);
+        for (const std::span<Candidate> some :
+             {std::span(candidates.begin(), spreading), std::span(spreading, candidates.end())})
+            if (auto change = best_change(some)) return *std::move(change);
         return {{},
                 part_.number ? "This number brings the part no nearer: let go, and drag it again."
                              : "No number of the rules that made this part moves it that way."};
@@ -204,31 +199,49 @@ class Dragger {
         return value < 0 && !alone ? "(" + number + ")" : number;
     }
 
+    /// Numbers that only spread chance come last: they are for parts that no other moves.
     std::vector<Candidate> candidates_of(const PartPlace& place,
                                          const std::vector<ModelParameter>& parameters) const {
         std::vector<Candidate> found;
+        std::map<std::uint32_t, std::size_t> met; ///< by the first byte
+        const auto add = [&](const Candidate& one) {
+            const auto [known, is_new] = met.try_emplace(one.span.begin, found.size());
+            if (is_new)
+                found.push_back(one);
+            else if (!one.only_spreads)
+                found[known->second].only_spreads = false;
+        };
+        std::multimap<std::string_view, const ModelParameter*> lets; ///< of all blocks
+        for (const ModelParameter& parameter : parameters)
+            if (is_literal(parameter) && parameter.kind != ModelParameter::Kind::setting)
+                lets.emplace(parameter.name, &parameter);
         const std::vector<Rule> rules = rules_of(*document_.lsys());
+        const ChanceSpread spread(*document_.lsys());
         for (std::size_t up = 0; up < place.rules.size(); ++up) {
             const auto rule = std::ranges::find(rules, place.rules[up], &Rule::span);
             if (rule == rules.end()) continue;
+            const auto add_leaf = [&](const Expression& leaf, bool only_spreads) {
+                if (leaf.kind == Expression::Kind::number) {
+                    if (leaf.span.known() && leaf.span.file == FileId{0})
+                        add({leaf.span, leaf.number, up, only_spreads});
+                    return;
+                }
+                const auto [first, last] = lets.equal_range(leaf.text);
+                for (auto let = first; let != last; ++let)
+                    add({let->second->span, let->second->value, up, only_spreads});
+            };
             for (const LsysModule& module : rule->string->modules)
-                for (const Expression& parameter : module.parameters)
-                    add_numbers(parameter, up, found);
+                spread.visit(*rule->block, module, add_leaf);
             for (const ModelParameter& parameter : parameters)
-                if (parameter.literal && parameter.span.file == FileId{0} && is_of_place(parameter) &&
-                    reads(*rule->string, parameter))
-                    found.push_back({parameter.span, parameter.value, up});
+                if (is_literal(parameter) && is_setting_of_place(parameter) && reads_setting(*rule->string))
+                    add({parameter.span, parameter.value, up, false});
         }
-        std::set<std::uint32_t> met;
-        std::erase_if(found, [&](const Candidate& one) { return !met.insert(one.span.begin).second; });
+        std::ranges::stable_partition(found, std::logical_not(), &Candidate::only_spreads);
         return found;
     }
 
-    static void add_numbers(const Expression& value, std::size_t rules_up, std::vector<Candidate>& found) {
-        if (value.kind == Expression::Kind::number && value.span.known() && value.span.file == FileId{0})
-            found.push_back({value.span, value.number, rules_up});
-        for (const Expression& operand : value.operands)
-            add_numbers(operand, rules_up, found);
+    static bool is_literal(const ModelParameter& parameter) {
+        return parameter.literal && parameter.span.file == FileId{0};
     }
 
     void find_slope(Candidate& candidate) const {
@@ -240,6 +253,18 @@ class Dragger {
     }
 
     static double along(Vec3 slope, Vec3 way) { return glm::dot(slope, way) / glm::dot(slope, slope); }
+
+    /// Nothing where none of them is of use.
+    std::optional<DragChange> best_change(std::span<Candidate> candidates) const {
+        for (Candidate& candidate : candidates)
+            find_slope(candidate);
+        std::ranges::stable_sort(candidates, {}, [&](const Candidate& one) { return cost(one); });
+        for (const Candidate& candidate : candidates) {
+            if (!(cost(candidate) < 1)) break;
+            if (auto change = change_of(candidate)) return change;
+        }
+        return std::nullopt;
+    }
 
     /// The share of the way that the number leaves, and the price of the number; 1 or more: of no use.
     double cost(const Candidate& candidate) const {

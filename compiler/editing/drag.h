@@ -30,9 +30,9 @@ struct DragChange {
 
 /// Changes one number of an L-system so that the point of a part comes as near to the place as that number
 /// can bring it: an argument of a turtle's symbol, in a rule that made the part, or a `let` or an angle that
-/// such a symbol reads. Of those that bring it near, the one of the last rule on the way is taken. Comments
-/// and layout stay. Lowers the model once for each number that it tries, and throws Cancelled and OutOfWork
-/// as that does.
+/// such a symbol reads. Of those that bring it near, the one of the last rule on the way is taken; one that
+/// only spreads chance (chance_spread.h) is taken where no other moves the part. Comments and layout stay.
+/// Lowers the model once for each number that it tries, and throws Cancelled and OutOfWork as that does.
 DragChange drag_part(const Document& document, const DraggedPart& part, const EditContext& context = {});
 
 } // namespace graftal

@@ -122,6 +122,15 @@ std::vector<ForeignModel> one_model(const ForeignFile& file) {
              file.span(0, std::min(file.text().find('\n'), file.text().size()))}};
 }
 
+std::vector<ForeignModel> models_at(const ForeignFile& file, const std::vector<std::size_t>& begins) {
+    const std::string name(stem_of(file.sources.name(file.file)));
+    std::vector<ForeignModel> models;
+    for (std::size_t i = 0; i < begins.size(); ++i)
+        models.push_back({begins.size() == 1 ? name : fmt::format("{}_{}", name, i + 1),
+                          file.span(begins[i], i + 1 < begins.size() ? begins[i + 1] : file.text().size())});
+    return models;
+}
+
 std::vector<ForeignModel> one_scene(const ForeignFile& file) {
     return {{"scene", file.span(0, file.text().size())}};
 }

@@ -55,6 +55,10 @@ std::string remark_text(std::string_view comment);
 /// The one model of a file, by the file's name, with its first line as the place.
 std::vector<ForeignModel> one_model(const ForeignFile& file);
 
+/// The models that begin at these places of a file, by the file's name; where they are several, with a
+/// number.
+std::vector<ForeignModel> models_at(const ForeignFile& file, const std::vector<std::size_t>& begins);
+
 /// The one model of a file that is a scene: all of its text.
 std::vector<ForeignModel> one_scene(const ForeignFile& file);
 

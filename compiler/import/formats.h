@@ -30,6 +30,11 @@ Importer lpy_importer();
 /// `Rule 1: A=F[+A]`. Other lines are remarks. Each premise begins a model.
 Importer houdini_importer();
 
+/// L-systems as Paul Bourke publishes them ("L-System User Notes", 1991, paulbourke.net/fractals/lsys): a
+/// text of lines such as `axiom = F`, `F -> F+F` and `angle = 60`. Other lines are remarks. Each axiom begins
+/// a model.
+Importer bourke_importer();
+
 /// Surfaces of the Virtual Laboratory (`.s`, by stedit and bezieredit): Bezier patches of four rows of four
 /// points, with the point, the heading and the up vector by which cpfg's turtle takes hold of them.
 Importer vlab_surface_importer();

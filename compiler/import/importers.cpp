@@ -177,9 +177,10 @@ std::span<const Importer> importers() {
     // Where two rows share an ending, the first that recognises the text has it.
     static const Importer table[] = {cpfg_importer(),         fractint_lsystem_importer(),
                                      lparser_importer(),      lpy_importer(),
-                                     houdini_importer(),      vlab_surface_importer(),
-                                     fractint_ifs_importer(), eisenscript_importer(),
-                                     cfdg_importer(),         flame_importer()};
+                                     houdini_importer(),      bourke_importer(),
+                                     vlab_surface_importer(), fractint_ifs_importer(),
+                                     eisenscript_importer(),  cfdg_importer(),
+                                     flame_importer()};
     return table;
 }
 

@@ -50,11 +50,12 @@ struct PlantModule {
 
 using PlantTriangle = std::array<Vec3, 3>;
 
-/// The surface of a polygon, or of a model that is made of triangles only.
+/// One side of a polygon, or of a model that is flat (lsys/turtle/flat_model.h).
 struct PlantBlade {
     std::uint32_t module = 0; ///< among Plant::modules
     std::uint32_t shape = 0;  ///< among Plant::shapes
     Affine world_from_shape;
+    double half_thickness = 0; ///< distance from the triangles to what is drawn, in the world, at most
 };
 
 /// The structure of a plant: modules in the order of the word, so that parents come before what they bear.

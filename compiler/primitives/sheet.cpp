@@ -9,7 +9,7 @@
 
 namespace graftal {
 
-std::optional<Sheet> sheet_of(const Primitive& primitive, const Mat3& linear, double thickest) {
+std::optional<Sheet> sheet_of(const Primitive& primitive, const Mat3& linear, const SheetLimits& limits) {
     if (!traits_of(primitive).bounded) return std::nullopt;
     const double largest = largest_entry(linear);
     if (!(largest > 0 && std::isfinite(largest))) return std::nullopt;
@@ -28,7 +28,9 @@ std::optional<Sheet> sheet_of(const Primitive& primitive, const Mat3& linear, do
     const Vec3 along = normal * map; // the transposed map of the normal
     const double shorter = area / longest;
     const double thickness = primitive_support(primitive, along) + primitive_support(primitive, -along);
-    if (!(thickness <= thickest * shorter) || !encloses_volume(primitive)) return std::nullopt;
+    if (!(thickness <= limits.of_mean * std::sqrt(area) && thickness <= limits.of_shorter * shorter))
+        return std::nullopt;
+    if (!encloses_volume(primitive)) return std::nullopt;
     return Sheet{normal, largest * thickness};
 }
 

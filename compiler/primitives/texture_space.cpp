@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/primitives/triangle_mesh.h"
+
 namespace graftal {
 
 namespace {
@@ -46,6 +48,11 @@ TextureSpace texture_space(const Primitive& primitive, double around, double tur
     const TextureWrap& wrap = traits_of(primitive).wrap;
     if (!wrap.around) return {};
     return {around, wrap.along ? std::clamp(std::round(around * turns), 1.0, most_along) : 1};
+}
+
+bool has_texture_points(const Primitive& primitive) {
+    const auto* const mesh = dynamic_cast<const TriangleMesh*>(primitive.shape().get());
+    return mesh && !mesh->data.uv.empty();
 }
 
 double turn_about_y(const TextureSpace& space, Vec3 point) {

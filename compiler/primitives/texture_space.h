@@ -20,6 +20,10 @@ double length_in_turns(const Mat3& parent_from_primitive);
 /// whole ones fit, so that they go on from one piece of a branch to the next.
 TextureSpace texture_space(const Primitive& primitive, double around, double turns);
 
+/// Whether its surface has texture points of its own, by its rows or from a file: nobody else could find them
+/// from the points alone.
+bool has_texture_points(const Primitive& primitive);
+
 /// The texture point of a point of the primitive's surface, in its own frame.
 TexturePoint texture_coordinates(const Primitive& primitive, const TextureSpace& space, Vec3 point);
 

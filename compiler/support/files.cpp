@@ -41,7 +41,9 @@ FileStamp MemoryFiles::stamp(const std::string& path) const {
 }
 
 bool MemoryFiles::lies_in(const std::string& path, const std::string& folder) const {
-    if (!find(path) && below_) return below_->lies_in(path, folder);
+    // The files below know that an absolute path leads into the folder where the program was started.
+    const bool is_there = below_ && below_->lies_in(path, folder);
+    if (is_there || (below_ && !find(path))) return is_there;
     const std::string inner = normalised_path(path), outer = normalised_path(folder);
     if (outer == ".") return !is_absolute_path(inner) && inner != ".." && !inner.starts_with("../");
     return inner == outer || inner.starts_with(outer.ends_with('/') ? outer : outer + '/');

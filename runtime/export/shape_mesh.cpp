@@ -101,12 +101,19 @@ ShapeMesh cornered(const TessellatedPrimitive& shape, const std::vector<Vec3>& p
 
 } // namespace
 
+bool ShapeMeshes::has_places(const Primitive& primitive, const SceneLook& look) const {
+    if (look.material && !scene_.materials[*look.material].texture.empty()) return true;
+    return places_ == PicturePlaces::of_surfaces && has_texture_points(primitive);
+}
+
 const ShapeMesh& ShapeMeshes::of(std::uint32_t number, const SceneLook& look) {
     const SceneShape& shape = scene_.shapes[number];
     TextureSpace space;
     Key key{number, 0, 0};
-    if (has_picture(look)) {
-        space = texture_space(shape.primitive, scene_.materials[*look.material].around, look.turns);
+    const bool placed = has_places(shape.primitive, look);
+    if (placed) {
+        const double around = look.material ? scene_.materials[*look.material].around : 1;
+        space = texture_space(shape.primitive, around, look.turns);
         key = {number, space.around, space.along};
     }
     const auto known = known_.find(key);
@@ -114,10 +121,10 @@ const ShapeMesh& ShapeMeshes::of(std::uint32_t number, const SceneLook& look) {
     const TessellatedPrimitive& mesh = tessellated(shape.primitive, shape.fineness);
     std::vector<Vec3> places = welded(mesh.vertices);
     ShapeMesh& made = known_[key];
-    if (!has_picture(look) && !mesh.normals.empty())
+    if (!placed && !mesh.normals.empty())
         made = {std::move(places), mesh.normals, {}, mesh.triangles};
     else
-        made = cornered(mesh, places, shape.primitive, has_picture(look) ? &space : nullptr);
+        made = cornered(mesh, places, shape.primitive, placed ? &space : nullptr);
     if (!made.uv.empty()) unite_equal_corners(made);
     return made;
 }

@@ -10,9 +10,9 @@
 
 namespace graftal {
 
-/// A shape as files have it: each vertex with its normal, and with its place on the picture where there is
-/// one. A corner between flat faces is there once for each face, and one on the seam of a picture once for
-/// each side.
+/// A shape as files have it: each vertex with its normal, and with its place on a picture where it has one. A
+/// corner between flat faces is there once for each face, and one on the seam of a picture once for each
+/// side.
 struct ShapeMesh {
     std::vector<Vec3> vertices;
     std::vector<Vec3> normals;                           ///< one a vertex, of unit length
@@ -20,26 +20,32 @@ struct ShapeMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles; ///< counter-clockwise seen from outside
 };
 
+/// The meshes that have places on a picture.
+enum class PicturePlaces {
+    of_pictures, ///< those whose material has a picture
+    of_surfaces, ///< and those whose surface has texture points of its own, so that it may get one later
+};
+
 /// The meshes of shapes, each made when it is first asked for.
 class ShapeMeshes {
   public:
-    explicit ShapeMeshes(const UnfoldedScene& scene) : scene_(scene) {}
+    explicit ShapeMeshes(const UnfoldedScene& scene, PicturePlaces places = PicturePlaces::of_pictures)
+        : scene_(scene), places_(places) {}
 
-    /// The mesh that the look shows: with places on the picture, if its material has one.
+    /// The mesh that the look shows, with its places on a picture if it has them.
     const ShapeMesh& of(std::uint32_t shape, const SceneLook& look);
 
-    bool has_picture(const SceneLook& look) const {
-        return look.material && !scene_.materials[*look.material].texture.empty();
-    }
-
   private:
+    bool has_places(const Primitive& primitive, const SceneLook& look) const;
+
     struct Key {
         std::uint32_t shape = 0;
-        double around = 0, along = 0; ///< 0: no picture
+        double around = 0, along = 0; ///< 0: no places on a picture
         auto operator<=>(const Key&) const = default;
     };
 
     const UnfoldedScene& scene_;
+    PicturePlaces places_;
     std::map<Key, ShapeMesh> known_;
 };
 

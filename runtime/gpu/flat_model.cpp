@@ -221,27 +221,56 @@ class Flattener {
     std::vector<std::uint32_t> meshes_; ///< by primitive
 };
 
-/// Whether some solid is as thin as a sheet (sheet.h), or may be, stretched by the parts that hold it.
-bool has_sheets(const DetailGraph& cut) {
-    double flattest = 1; // of those parts
+/// Flatness of the flattest map of parts within which a node lies, by node.
+std::vector<double> flattest_above(const DetailGraph& cut) {
+    struct Flat {
+        double flatness;
+        NodeId below;
+    };
+    std::vector<Flat> maps;
     for (const DetailNode& node : cut.nodes)
         for (const DetailEdge& edge : node.edges) {
+            if (edge.similarity || cut.nodes[edge.child].primitive) continue;
             const Vec3 sigma = singular_values(edge.node_from_child.linear);
-            if (!edge.similarity && !cut.nodes[edge.child].primitive)
-                flattest = std::min(flattest, sigma.z / sigma.x);
+            if (sigma.z < sigma.x) maps.push_back({sigma.z / sigma.x, edge.child});
         }
-    const auto is_sheet = [&](const DetailEdge& edge) {
-        const std::optional<Primitive>& primitive = cut.nodes[edge.child].primitive;
-        return !edge.similarity && primitive &&
-               sheet_of(*primitive, edge.node_from_child.linear, thickest_sheet / flattest);
-    };
-    return std::ranges::any_of(cut.nodes, [&](const DetailNode& node) {
-        bool found =
-            std::ranges::any_of(node.edges, is_sheet) || std::ranges::any_of(node.stop_edges, is_sheet);
-        if (node.cell && node.cell->flattest <= thickest_sheet / flattest)
+    std::ranges::sort(maps, {}, &Flat::flatness);
+    std::vector<double> flattest(cut.nodes.size(), 1);
+    std::vector<NodeId> open;
+    for (const Flat& map : maps) { // the flattest first: it holds for all that lies below
+        open.push_back(map.below);
+        while (!open.empty()) {
+            const NodeId id = open.back();
+            open.pop_back();
+            if (flattest[id] < 1) continue;
+            flattest[id] = map.flatness;
+            for (const DetailEdge& edge : cut.nodes[id].edges)
+                open.push_back(edge.child);
+        }
+    }
+    return flattest;
+}
+
+/// Whether some solid is as thin as a sheet (sheet.h), or may be, stretched by the parts that hold it.
+bool has_sheets(const DetailGraph& cut) {
+    const std::vector<double> flattest = flattest_above(cut);
+    for (std::size_t id = 0; id < cut.nodes.size(); ++id) {
+        const DetailNode& node = cut.nodes[id];
+        const SheetLimits limits{SheetLimits().of_mean / flattest[id],
+                                 SheetLimits().of_shorter / flattest[id]};
+        const auto is_sheet = [&](const DetailEdge& edge) {
+            const std::optional<Primitive>& primitive = cut.nodes[edge.child].primitive;
+            return (!edge.similarity || flattest[id] < 1) && primitive &&
+                   sheet_of(*primitive, edge.node_from_child.linear, limits);
+        };
+        if (std::ranges::any_of(node.edges, is_sheet) || std::ranges::any_of(node.stop_edges, is_sheet))
+            return true;
+        bool found = false;
+        if (node.cell && node.cell->flattest <= limits.of_mean)
             node.cell->for_each([&](const CellEdge& edge) { found = found || is_sheet(edge); });
-        return found;
-    });
+        if (found) return true;
+    }
+    return false;
 }
 
 /// Parts of the model that no array of the kernel holds.

@@ -41,9 +41,9 @@ struct Model::Parts {
     }
 
     /// The light on plants, within the work that is set, or as much as commands take.
-    PlantLightOptions light_options(int samples) const {
+    PlantLightOptions light_options(int samples = MeasureSettings().samples) const {
         PlantLightOptions light;
-        light.most_samples = samples;
+        if (samples > 0) light.samples = samples;
         light.work_seconds = options.work_seconds.value_or(light.work_seconds);
         return light;
     }

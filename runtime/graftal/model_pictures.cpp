@@ -166,7 +166,7 @@ Result<Drawn> Model::export_to(const std::string& path, const ExportSettings& se
         if (!format) {
             std::string problem = refusal_of_plant_options(*plant, options.file, false);
             if (!problem.empty()) return fail(std::move(problem));
-            const PlantLightOptions light = parts_->light_options(PlantLightOptions().most_samples);
+            const PlantLightOptions light = parts_->light_options();
             if (!export_plant(parts_->session, parts_->options, *plant, options.file,
                               settings.irradiance ? &light : nullptr, compilation))
                 return std::nullopt;

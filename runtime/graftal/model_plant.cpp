@@ -82,7 +82,8 @@ Result<PlantTable> Model::plant() {
 
 Result<PlantReport> Model::measures(const MeasureSettings& settings) {
     return parts_->run<PlantReport>([&](Compilation& compilation) -> std::optional<PlantReport> {
-        if ((settings.ground_area && !(*settings.ground_area > 0)) || settings.samples < 4) {
+        const bool has_samples = settings.samples >= 4 || settings.samples == 0;
+        if ((settings.ground_area && !(*settings.ground_area > 0)) || !has_samples) {
             compilation.status = Status::failure("ground_area is not above 0, or samples is less than 4");
             return std::nullopt;
         }

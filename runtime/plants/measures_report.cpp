@@ -21,7 +21,7 @@ constexpr MeasuresKey keys[] = {
     {"modules", "letters of the word that mean something: rows of 'export plant.csv' without part_of"},
     {"segments", "segments with a length"},
     {"tips", "segments that bear no segment"},
-    {"leaves", "polygons, discs, and models made of triangles only"},
+    {"leaves", "polygons, discs, and models made of what is flat only"},
     {"balls", "spheres: neither wood nor leaves"},
     {"unmeasured", "models whose area is not known; they are in no sum"},
     {"length", "of all segments together, in the model's units, as all lengths here"},

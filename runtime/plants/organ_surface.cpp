@@ -39,6 +39,7 @@ OrganSurface::OrganSurface(const Plant& plant, std::uint32_t module, const Plant
     case Organ::model:
         flat_ = true;
         if (!blade) break;
+        thickness_ = blade->half_thickness;
         for (const PlantTriangle& triangle : plant.shapes[blade->shape]) {
             const Vec3 a = blade->world_from_shape(triangle[0]), b = blade->world_from_shape(triangle[1]),
                        c = blade->world_from_shape(triangle[2]);

@@ -75,9 +75,10 @@ class PlantLighting {
                                   readable_seconds(expected));
             return std::nullopt;
         }
+        const int most = options_.samples.value_or(PlantLightOptions::most_samples);
         int samples = 0;
-        for (int more = first_samples; samples < options_.most_samples && count > 0;
-             more = std::min(samples, options_.most_samples - samples)) {
+        for (int more = first_samples; samples < most && count > 0 && !is_enough(samples);
+             more = std::min(samples, most - samples)) {
             if (samples > 0 &&
                 work_seconds() * (1 + static_cast<double>(more) / samples) > options_.work_seconds)
                 break;
@@ -122,6 +123,18 @@ class PlantLighting {
             rays.sample(surface_of(organ), organ.module, 0);
         }
         return static_cast<double>(rays.work()) / WorkRates::ray_steps / static_cast<double>(tried);
+    }
+
+    /// Whether so many samples of each organ are as exact as is asked for.
+    bool is_enough(int samples) const {
+        if (options_.samples || samples < PlantLightOptions::usual_samples) return false;
+        double light = 0, errors = 0;
+        for (const OrganSums& sums : sums_) {
+            light += sums.light / samples;
+            errors += std::pow(error_of(sums.light, sums.light_squares, samples), 2);
+        }
+        const auto count = static_cast<double>(sums_.size());
+        return std::sqrt(errors / count) <= PlantLightOptions::enough_error * light / count;
     }
 
     void sample_all(int begin, int end) {

@@ -15,8 +15,13 @@ namespace graftal {
 struct Plant;
 
 struct PlantLightOptions {
-    int most_samples = 64;    ///< of an organ
+    /// The samples of an organ; nothing: usual_samples, and more until the standard errors of the organs'
+    /// light are, in their root mean square, enough_error of its mean.
+    std::optional<int> samples;
     double work_seconds = 10; ///< of one processor, counted (detail/work.h)
+
+    static constexpr int usual_samples = 64, most_samples = 65'536;
+    static constexpr double enough_error = 0.01;
 };
 
 /// Light on an organ, where an open horizontal plane has 1. Of flat organs both sides count together, for an
@@ -51,8 +56,9 @@ struct PlantLight {
 };
 
 /// The light on each organ of a plant that the model shows. It takes 4 samples of each organ, then twice as
-/// many, and so on, as long as the work suffices. The result is the same for any number of threads. Nothing,
-/// with a `problem`, where not even 4 fit the work, or no light comes from above. Throws Cancelled.
+/// many, and so on, as far as the options ask for them and the work suffices. The result is the same for any
+/// number of threads. Nothing, with a `problem`, where not even 4 fit the work, or no light comes from above.
+/// Throws Cancelled.
 std::optional<PlantLight> light_on_plant(const Plant& plant, const TraceModel& model, const PlantSky& sky,
                                          const PlantLightOptions& options, const Workers& workers,
                                          const Control& control, std::string& problem);

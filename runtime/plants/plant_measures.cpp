@@ -186,20 +186,22 @@ class Measurer {
         highest_ = std::max(highest_, point.y);
     }
 
-    /// The ball about a point, whose circle from above is taken as a polygon about as large.
+    /// The ball about a point.
     void include_round(Vec3 centre, double radius) {
-        include(centre - Vec3(0, radius, 0));
-        include(centre + Vec3(0, radius, 0));
-        for (const Vec3 direction : directions_.back())
-            include(centre + radius * direction);
+        include_ellipse(centre, radius * Vec3(1, 0, 0), radius * Vec3(0, 0, 1), radius);
     }
 
     void include_disc(const PlantModule& disc) {
-        for (std::size_t i = 0; i < azimuths; ++i) {
-            const double turn = 2 * std::numbers::pi * static_cast<double>(i) / azimuths;
-            include(disc.start +
-                    disc.width / 2 * (std::cos(turn) * disc.heading + std::sin(turn) * disc.left));
-        }
+        const Vec3 a = disc.width / 2 * disc.heading, b = disc.width / 2 * disc.left;
+        include_ellipse(disc.start, a, b, std::hypot(a.y, b.y));
+    }
+
+    /// What is an ellipse from above, with these axes. `height`: how far it reaches above its centre, and
+    /// below.
+    void include_ellipse(Vec3 centre, Vec3 a, Vec3 b, double height) {
+        outline_.add_ellipse({centre.x, centre.z}, {a.x, a.z}, {b.x, b.z});
+        lowest_ = std::min(lowest_, centre.y - height);
+        highest_ = std::max(highest_, centre.y + height);
     }
 
     void finish() {

@@ -1,11 +1,16 @@
 #include "runtime/plants/plant_of_model.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "compiler/session/stages.h"
+#include "compiler/support/counter_random.h"
 #include "runtime/render/native_engine.h"
 #include "runtime/system/worker_threads.h"
 
@@ -16,6 +21,40 @@ namespace {
 /// Whether the graph ends by itself or by its steps: then no part need be left out for its size.
 bool ends(const AnalysedModel& model, const StageOptions& stages) {
     return !model.components.unending[model.graph.root] || levels_of(model, stages.lower.steps).has_value();
+}
+
+/// Warns of organs that lie exactly where others of their kind do. Parts that share what chance chose differ
+/// by where they stand, unless chance alone says that too.
+void warn_of_coinciding(const Plant& plant, Span span, Diagnostics& diagnostics) {
+    constexpr std::uint64_t few = 100; // one in so many may happen to
+    double reach = 0;
+    for (const PlantModule& module : plant.modules)
+        reach = std::max(reach, largest_entry(module.start));
+    const double grid = 1e-9 * reach;
+    std::vector<std::uint64_t> places;
+    for (const PlantModule& module : plant.modules) {
+        if (!(module.area > 0) || module.organ == Organ::none) continue;
+        auto place = static_cast<std::uint64_t>(module.organ);
+        const auto add = [&](Vec3 vector, double unit) {
+            for (int i = 0; i < 3; ++i) {
+                const double number = unit > 0 ? std::round(vector[i] / unit) + 0.0 : 0; // -0 is 0
+                place = CounterRandom(place)(std::bit_cast<std::uint64_t>(number));
+            }
+        };
+        add(module.start, grid);
+        add(module.heading, 1e-6);
+        add(module.up, 1e-6);
+        places.push_back(place);
+    }
+    std::ranges::sort(places);
+    const std::size_t coinciding = std::ranges::unique(places).size();
+    if (!(few * coinciding > places.size())) return;
+    diagnostics
+        .warning(span,
+                 fmt::format("{} of {} organs lie exactly in others, and so their light is wrong: parts "
+                             "share the places that chance chose",
+                             coinciding, places.size()))
+        .with_hint("give '--exact', by which chance chooses for each part");
 }
 
 std::optional<PlantLight> traced_light(PictureSession& session, const RenderOptions& options,
@@ -39,18 +78,21 @@ std::optional<PlantLight> traced_light(PictureSession& session, const RenderOpti
                             nullptr, cancel);
     const PlantSky sky = sky_of_plant(prepared.viewed->view, graph.settings);
     const Span span = graph.objects[graph.root].span;
+    const int wanted = asked.samples.value_or(PlantLightOptions::usual_samples);
     std::string problem;
     std::optional<PlantLight> light =
         light_on_plant(plant, traced, sky, asked, WorkerThreads(options.threads), session.control(), problem);
     if (!light)
         compilation.diagnostics.error(span, problem)
             .with_hint("allow more with --work, and give the model a 'sky' or a 'sun' above the horizon");
-    else if (light->lit_organs > 0 && light->samples < asked.most_samples)
+    else if (light->lit_organs > 0 && light->samples < wanted)
         compilation.diagnostics
             .warning(span,
                      fmt::format("within {} seconds of work each organ has {} samples of its light, not {}",
-                                 asked.work_seconds, light->samples, asked.most_samples))
+                                 asked.work_seconds, light->samples, wanted))
             .with_hint("allow more with --work");
+    if (model->derivation && model->derivation->variants > 1)
+        warn_of_coinciding(plant, span, compilation.diagnostics);
     return light;
 }
 

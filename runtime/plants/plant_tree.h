@@ -12,7 +12,7 @@ inline bool is_segment(const PlantModule& module) {
     return module.organ == Organ::segment && module.length > 0;
 }
 
-/// Whether the module is drawn as a blade: a polygon, a disc, or a model made of triangles only.
+/// Whether the module is drawn as a blade: a polygon, a disc, or a flat model (lsys/turtle/flat_model.h).
 inline bool is_blade(const PlantModule& module) {
     return module.organ == Organ::polygon || module.organ == Organ::disc ||
            (module.organ == Organ::model && module.is_measured);

@@ -205,9 +205,9 @@ PYBIND11_MODULE(_graftal, module) {
                  return dict;
              })
         .def("measures",
-             [](Model& model, std::optional<double> ground_area, bool irradiance, int samples,
+             [](Model& model, std::optional<double> ground_area, bool irradiance, std::optional<int> samples,
                 const py::object& progress) {
-                 const MeasureSettings settings{ground_area, irradiance, samples};
+                 const MeasureSettings settings{ground_area, irradiance, samples.value_or(0)};
                  PlantReport report = value_of(model, progress, [&] { return model.measures(settings); });
                  const auto rows = static_cast<py::ssize_t>(report.lights.size());
                  py::dict organs;

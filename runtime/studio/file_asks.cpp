@@ -56,7 +56,7 @@ std::string ending_of(const std::string& path) {
 
 FileJob file_job(const StudioState& state, const nlohmann::json& ask) {
     const MessageReader fields(ask);
-    FileJob job{{}, {state.name, *state.text}, fields.text("path").value_or(""), {}};
+    FileJob job{{}, {state.name, *state.text}, fields.text("path").value_or(""), {}, state.files};
     job.suffix = job.path.empty() ? fields.needed_text("suffix") : ending_of(job.path);
     if (!job.suffix.starts_with('.')) job.suffix = "." + job.suffix;
     const nlohmann::json* const film = fields.object("film");

@@ -54,7 +54,7 @@ std::string zoom_text(const Magnification& zoom) {
 
 std::shared_ptr<const ViewedModel> Pointer::view(const StageOptions& stages, std::string& problem) {
     if (!session_ || session_name_ != state_.name) {
-        session_ = std::make_unique<Session>(state_.name, home_.files());
+        session_ = std::make_unique<Session>(state_.name, files_);
         session_name_ = state_.name;
         session_text_.clear();
         home_.equip(*session_);

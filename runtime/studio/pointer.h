@@ -17,8 +17,9 @@ namespace graftal {
 /// it. It looks at the model as the text names it, before passes merge what is equal.
 class Pointer {
   public:
-    /// `cancel` ends its stages.
-    Pointer(StudioHome& home, CancelFlag cancel) : home_(home), cancel_(std::move(cancel)) {}
+    /// `files`: those of the home, with the ones of links over them. `cancel` ends its stages.
+    Pointer(StudioHome& home, const Files& files, CancelFlag cancel)
+        : home_(home), files_(files), cancel_(std::move(cancel)) {}
 
     /// The state that it is asked about. Requires a text.
     void look_at(const StudioState& state) { state_ = state; }
@@ -65,6 +66,7 @@ class Pointer {
                  const Magnification& zoom, double scale);
 
     StudioHome& home_;
+    const Files& files_;
     CancelFlag cancel_;
     StudioState state_;
     std::unique_ptr<Session> session_; ///< of the names

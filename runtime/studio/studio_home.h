@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,7 @@ struct FileJob {
     OpenedModel model;              ///< as the page has it now
     std::string path;               ///< where it goes, from where the home was started; "": into memory
     std::string suffix;             ///< of a file in memory
+    std::map<std::string, std::string> files{}; ///< StudioState::files, of which none leads out of the root
 };
 
 /// The file of a job, or why there is none.

@@ -52,9 +52,9 @@ double thumbnail_seconds(ImageSize size) {
 } // namespace
 
 StudioSession::StudioSession(StudioHome& home, StudioSink& sink, std::function<void()> wake)
-    : home_(home), sink_(sink), wake_(std::move(wake)),
-      files_(home.files(), [this](const std::string& path) { used_[path] = home_.files().stamp(path); }),
-      pointer_(home, CancelFlag([this] { return outdated(); })) {}
+    : home_(home), sink_(sink), wake_(std::move(wake)), laid_(home.files()),
+      files_(laid_.files(), [this](const std::string& path) { used_[path] = laid_.files().stamp(path); }),
+      pointer_(home, laid_.files(), CancelFlag([this] { return outdated(); })) {}
 
 void StudioSession::hear(std::string_view message) {
     std::string problem;
@@ -170,7 +170,17 @@ void StudioSession::take_state() {
         send(fault_message("the first state has no 'name' or no 'text'"));
         return;
     }
+    confine_files(state_, home_);
+    if (laid_.lay(state_.files)) forget_files();
     stage_ = Stage::compile;
+}
+
+/// Has the stages read the files again that models name.
+void StudioSession::forget_files() {
+    if (model_.session) model_.session->reload(true);
+    thumbnail_model_.session.reset();
+    pointer_.forget_files();
+    film_framing_ = {};
 }
 
 /// False after errors, or where the flag is raised.
@@ -204,12 +214,9 @@ bool StudioSession::prepare(ModelSession& model, StudioState& state, PreparedVie
 
 /// Has the stages read files again, if one that the model names changed.
 bool StudioSession::reload_files() {
-    const auto is_other = [&](const auto& used) { return home_.files().stamp(used.first) != used.second; };
+    const auto is_other = [&](const auto& used) { return laid_.files().stamp(used.first) != used.second; };
     if (!model_.session || std::ranges::none_of(used_, is_other)) return false;
-    model_.session->reload(true);
-    thumbnail_model_.session.reset();
-    pointer_.forget_files();
-    film_framing_ = {};
+    forget_files();
     return true;
 }
 
@@ -334,7 +341,7 @@ void StudioSession::start_engine() {
         if (wake_) wake_();
     };
     home_.draw_picture(
-        {command_words(state_, "render"), {state_.name, *state_.text}, {}, ".png"},
+        {command_words(state_, "render"), {state_.name, *state_.text}, {}, ".png", state_.files},
         CancelFlag([this, number] { return stopped_ || newest_ != number; }),
         [note](const Image& developed) { note(developed, {}); },
         [note](std::string error) { note(std::nullopt, std::move(error)); });
@@ -497,7 +504,7 @@ nlohmann::json StudioSession::answer_text(const Ask& ask) {
     context.lower = state_.stages.lower;
     context.help.control = {CancelFlag([this] { return outdated(); }), {}, &work};
     context.help.translator = home_.translator();
-    context.help.files = &home_.files();
+    context.help.files = &laid_.files();
     return answer_about_text(
         ask.what, ask.message,
         {state_, analysed.get(), lowered ? &lowered->notes.parameters : nullptr, context});
@@ -507,6 +514,13 @@ nlohmann::json StudioSession::answer(const Ask& ask) {
     if (!state_.text) throw BadMessage("no state was sent");
     const MessageReader fields(ask.message);
     if (is_about_text(ask.what)) return answer_text(ask);
+    if (ask.what == "link") {
+        // A model may name files that are none of its kind: only where it is whole do their texts go out.
+        const bool is_whole = compilation_.status.ok() && !compilation_.diagnostics.has_errors();
+        return link_parts(state_, used_, is_whole ? laid_.files() : no_files());
+    }
+    if (ask.what == "open")
+        return opened_link(ask.message, home_, CancelFlag([this] { return stopped_.load(); }));
     pointer_.look_at(state_);
     if (ask.what == "pick") return pointer_.pick(fields.needed_number("x"), fields.needed_number("y"));
     if (ask.what == "zoom") {

@@ -14,6 +14,7 @@
 
 #include "compiler/support/files.h"
 #include "runtime/studio/film_framing.h"
+#include "runtime/studio/linked_files.h"
 #include "runtime/studio/picture/progressive_picture.h"
 #include "runtime/studio/pointer.h"
 #include "runtime/studio/studio_home.h"
@@ -104,6 +105,7 @@ class StudioSession {
 
     // For work().
     void take_state();
+    void forget_files();
     bool answer_next();
     Thumbnail thumbnail_of(const Ask& ask) const;
     void start_file(const Ask& ask);
@@ -148,9 +150,10 @@ class StudioSession {
     Stage stage_ = Stage::nothing;
     StudioState state_;                     ///< with its text
     std::map<std::string, FileStamp> used_; ///< files that the model names, there or not, when it was read
-    const HeardFiles files_;                ///< that note them
+    LaidFiles laid_;
+    const HeardFiles files_; ///< that note them
     ModelSession model_{files_};
-    ModelSession thumbnail_model_{home_.files()};
+    ModelSession thumbnail_model_{laid_.files()};
     std::deque<Thumbnail> thumbnails_;
     Compilation compilation_; ///< of the state
     std::unique_ptr<ProgressivePicture> picture_;

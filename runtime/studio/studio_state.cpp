@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "compiler/support/number_range.h"
+#include "compiler/support/path_text.h"
 #include "compiler/zoom/address.h"
 #include "compiler/zoom/magnification.h"
 #include "runtime/studio/binary_message.h"
@@ -92,6 +93,14 @@ void read_steps(const MessageReader& message, LowerOptions& lower) {
     }
 }
 
+std::map<std::string, std::string> read_files(const nlohmann::json& files) {
+    const MessageReader texts(files);
+    std::map<std::string, std::string> read;
+    for (const auto& file : files.items())
+        read[normalised_path(file.key())] = texts.needed_text(file.key().c_str());
+    return read;
+}
+
 Quality quality_named(const std::string& name) {
     static constexpr std::pair<const char*, Quality> qualities[] = {
         {"draft", Quality::draft}, {"normal", Quality::normal}, {"best", Quality::best}};
@@ -109,6 +118,7 @@ StudioState read_state(const nlohmann::json& object, bool has_number) {
         state.number = static_cast<std::uint32_t>(message.needed_whole("number", first_ask_id - 1));
     state.name = message.text("name").value_or("");
     state.text = message.text("text");
+    if (const nlohmann::json* const files = message.object("files")) state.files = read_files(*files);
     LowerOptions& lower = state.stages.lower;
     if (const nlohmann::json* const set = message.object("set")) {
         const MessageReader values(*set);

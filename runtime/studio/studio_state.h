@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,8 @@ struct StudioState {
     std::uint32_t number = 0;
     std::string name;                ///< of the model's file
     std::optional<std::string> text; ///< nothing: the one before
+    /// Texts of files that came with a link, by their normalised paths: they lie over those of the home.
+    std::map<std::string, std::string> files;
     StageOptions stages;
     std::string engine = "native"; ///< "": of files that nobody draws
     int threads = 0;

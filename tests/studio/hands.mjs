@@ -24,8 +24,8 @@ export function tester(browser, serve) {
   function test(name, check, options = {}) {
     if (!process.env.ONLY || name.includes(process.env.ONLY)) noted.push({ name, check, ...options });
   }
-  async function run({ name, check, width = 1280, height = 720, dark = false, opened, hash = '', touch = false, ready = 'body[data-picture=done]' }) {
-    const session = await serve(opened);
+  async function run({ name, check, width = 1280, height = 720, dark = false, opened, told, hash = '', touch = false, ready = 'body[data-picture=done]' }) {
+    const session = await serve(opened, told);
     const context = await browser.newContext({
       viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', permissions: ['clipboard-read', 'clipboard-write'],
       acceptDownloads: true, hasTouch: touch,

@@ -22,16 +22,17 @@ rifs fern {
 `;
 
 /** Serves `folder` and the session; gives its address and what the page told. With `told.delay_ms`, states are answered so late; with
- * `told.passes` 1, their pictures stay rough; with `told.silent`, nothing is varied, and else so many as `told.children`; with
- * `told.slow`, `told.film` says when a film is done. */
-export async function serve(folder, modules, { name = 'fern.rifs', text = example } = {}) {
+ * `told.passes` 1, their pictures stay rough; with `told.whole_seconds`, the work ends them sooner, but for the best; with `told.silent`,
+ * nothing is varied, and else so many as `told.children`, with `told.later` as soon as `told.vary` is called; with `told.slow`,
+ * `told.film` says when a film is done. After `told.drag_ms` drags are answered. A text that says `fits` is framed anew as the map left moves. */
+export async function serve(folder, modules, { name = 'fern.rifs', text = example } = {}, begun = {}) {
   const { WebSocketServer } = createRequire(path.join(modules, 'x'))('ws');
   const server = http.createServer((request, response) => {
     const file = path.basename(new URL(request.url, 'http://x').pathname) || 'index.html', whole = path.join(folder, file);
     if (!fs.existsSync(whole)) return response.writeHead(404).end();
     response.writeHead(200, { 'content-type': kinds[path.extname(file)] ?? 'text/plain' }).end(fs.readFileSync(whole));
   });
-  const told = { states: [], asks: [], tokens: [] };
+  const told = { states: [], asks: [], tokens: [], ...begun };
   new WebSocketServer({ server, path: '/socket' }).on('connection', (socket, request) => {
     told.tokens.push(new URL(request.url, 'http://x').searchParams.get('token'));
     new MockSession((message) => socket.send(Buffer.isBuffer(message) ? message : JSON.stringify(message)), told, { name, text }).hear_from(socket);
@@ -55,6 +56,7 @@ class MockSession {
     socket.on('message', (bytes) => {
       const message = JSON.parse(bytes);
       if (message.type === 'state') this.hear_state(message);
+      else if (message.type === 'ask' && this.told.drag_ms && ['map', 'pull'].includes(message.what)) setTimeout(() => this.hear_ask(message), this.told.drag_ms);
       else if (message.type === 'ask') this.hear_ask(message);
       else this.send({ type: 'fault', text: `There is no message of the type ${message.type}.` });
     });
@@ -74,7 +76,6 @@ class MockSession {
     if (findings.some(({ severity }) => severity === 'error')) return;
     const model = model_of(state);
     this.send({ type: 'model', number, ...model });
-    this.send({ type: 'progress', number, stage: 'tracing', share: null });
     setImmediate(() => {
       if (this.state !== state) return;
       const picture = plot(model, state);
@@ -82,7 +83,8 @@ class MockSession {
       this.send({ type: 'pass', number, pass: 0, samples: 0.0625, seconds_left: 1, noise_255: 9, done: false });
       if (this.told.passes === 1) return;
       this.tiles(number, 1, state, picture, 1);
-      this.send({ type: 'pass', number, pass: 1, samples: 4, seconds_left: 0, noise_255: 1, done: true });
+      const whole_seconds = state.quality === 'best' ? null : this.told.whole_seconds ?? null;
+      this.send({ type: 'pass', number, pass: 1, samples: whole_seconds ? 0.25 : 4, seconds_left: null, noise_255: 1, done: true, whole_seconds });
     });
   }
 
@@ -137,7 +139,8 @@ class MockSession {
       case 'drag': {
         const found = /\+\(([\d.]+)\)/.exec(state.text), at = found.index + 2;
         const text = String(Math.round(Number(found[1]) + 5 * (fields.to[0] - fields.from[0])));
-        return answer({ edits: [{ from: at, to: at + found[1].length, text }], number: at, point: fields.to });
+        const change = { edits: [{ from: at, to: at + found[1].length, text }], number: at, point: fields.to };
+        return void setTimeout(() => answer(change), this.told.drag_ms ?? 0); // so late as the test wants it
       }
       case 'map':
       case 'pull': {
@@ -158,11 +161,12 @@ class MockSession {
         return answer({ edits: [{ from: state.text.lastIndexOf('}'), to: state.text.lastIndexOf('}'), text: `  follow ${fields.from} -> ${fields.to}\n` }] });
       case 'vary':
         if (this.told.silent) return undefined;
-        return answer({
+        this.told.vary = () => answer({
           children: Array.from({ length: this.told.children ?? fields.count }, (_, i) => (fields.kind === 'seed'
             ? { seed: 10 * fields.seed + i, says: `seed ${10 * fields.seed + i}` }
             : { set: { lean: 2.5 + (i - 3.5) * 4 * fields.spread * fields.seed }, says: `lean ${(2.5 + (i - 3.5) * 4 * fields.spread * fields.seed).toFixed(2)}` })),
         });
+        return this.told.later ? undefined : this.told.vary();
       case 'thumbnail':
         this.tiles(id, 0, fields, plot(model_of(fields), fields), 1);
         return answer({});
@@ -176,6 +180,11 @@ class MockSession {
         this.send(binary([0x4c494647, id, Buffer.byteLength(name), 0, 0, 0, 0, 0], Buffer.concat([Buffer.from(name), contents])));
         return answer({});
       }
+      case 'link': // holds and lacks what the test says
+        return answer({ name: state.name, files: this.told.files ?? {}, lacks: this.told.lacks ?? [] });
+      case 'open':
+        if (/^use leaf/m.test(fields.text) && !fields.files?.['leaf.rifs']) return answer({ error: "The link lacks 'leaf.rifs'." });
+        return answer({ name: fields.name, files: fields.files ?? {} });
       case 'command':
         return answer({ command: `graftal render ${state.name} --size ${state.width}x${state.height}${Object.entries(state.set).map(([key, value]) => ` --set ${key}=${value}`).join('')}` });
       default:
@@ -232,7 +241,9 @@ function digraphs_of({ text }) {
 }
 
 const is_solid = ({ text }) => text.includes('solid');
-const box_of = (state) => (is_solid(state) ? { least: [-1, -1, -1], most: [1, 1, 1] } : { least: [-2.5, 0, 0], most: [2.7, 10, 0] });
+const shift_of = ({ text }) => 3 * (text.includes('fits') ? Number(/map left *{ matrix [^,]*,[^,]*,[^,]*,([^,]*)/.exec(text)?.[1] ?? 0) : 0);
+const box_of = (state) => (is_solid(state) ? { least: [-1, -1, -1], most: [1, 1, 1] }
+  : { least: [-2.5 + shift_of(state), 0, 0], most: [2.7 + shift_of(state), 10, 0] });
 
 function model_of(state) {
   const parameters = [...state.text.matchAll(/^\s*let (\w+) = (\S+)/gm)].map((found) => {
@@ -242,7 +253,7 @@ function model_of(state) {
   return {
     parameters, box: box_of(state),
     camera: state.camera ?? (is_solid(state) ? { location: [2.4, 1.8, 4], look_at: [0, 0, 0], up: [0, 1, 0], angle_deg: 45 }
-      : { location: [0.1, 5, 17], look_at: [0.1, 5, 0], up: [0, 1, 0], angle_deg: 60 }), stats: { steps: 12 }, chance: !state.text.includes('no chance'), grows: !state.text.includes('no growth'), maps: maps_of(state), digraphs: digraphs_of(state),
+      : { location: [0.1 + shift_of(state), 5, 17], look_at: [0.1 + shift_of(state), 5, 0], up: [0, 1, 0], angle_deg: 60 }), stats: { steps: 12 }, chance: !state.text.includes('no chance'), grows: !state.text.includes('no growth'), maps: maps_of(state), digraphs: digraphs_of(state),
   };
 }
 

@@ -2,9 +2,10 @@
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
+import zlib from 'node:zlib';
 import { createRequire } from 'node:module';
 import { open_browser, tester } from './hands.mjs';
-import { serve } from './mock_session.mjs';
+import { example, serve } from './mock_session.mjs';
 
 const [modules, folder] = process.argv.slice(2).map((name) => path.resolve(name));
 for (const needed of [modules, path.join(folder, 'index.html')]) {
@@ -14,7 +15,7 @@ for (const needed of [modules, path.join(folder, 'index.html')]) {
 }
 const require = createRequire(path.join(modules, 'x'));
 const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
-const browser = await open_browser(modules), test = tester(browser, (opened) => serve(folder, modules, opened));
+const browser = await open_browser(modules), test = tester(browser, (opened, told) => serve(folder, modules, opened, told));
 
 test('an error is underlined, and its mending changes the picture', async (hand, page) => {
   await hand.type_at('terminal', ' oops');
@@ -52,6 +53,120 @@ const leans = (text) => /let lean = (\S+)/.exec(text)[1];
 const blank = (page) => page.evaluate(() => {
   const canvas = document.getElementById('picture');
   return canvas.hidden || canvas.width === 2;
+});
+
+test('a picture that the work has ended goes on by a button', async (hand, page) => {
+  await page.focus('#place .edit');
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter');
+  await hand.until(() => hand.last().quality === 'best', 'the better quality is drawn');
+  await hand.settled();
+  assert.equal(await page.textContent('#status'), '4 samples a pixel');
+  await page.keyboard.press('Control+z');
+  await hand.settled();
+  assert.equal(await page.textContent('#status'), 'coarse, stopped here: all of it takes 3 min or more Go on at best quality');
+}, { told: { whole_seconds: 170 } });
+
+test('the time that is left counts down, and what has no time says what it does', async (hand, page, session) => {
+  const told = async (line) => hand.until(async () => (await page.textContent('#status')) === line, `it says: ${line}`);
+  session.told.passes = 1;
+  await hand.knob('lean').press('ArrowRight');
+  await told('coarse, less than 1 s left');
+  await told('coarse, still drawing …');
+  session.told.passes = 2;
+  session.told.delay_ms = 2000;
+  await hand.knob('lean').press('ArrowRight');
+  await told('reading the model …');
+  await told('4 samples a pixel');
+  session.told.delay_ms = 0;
+  for (const [pass, line] of [
+    [{ samples: 0.25, seconds_left: null, done: false }, 'coarse, a finer picture follows …'],
+    [{ samples: 16, seconds_left: null, done: false }, '16 samples a pixel, taking noise out …'],
+    [{ samples: null, seconds_left: null, done: false }, 'native is drawing …'],
+    [{ samples: null, seconds_left: null, done: true }, 'drawn by native'],
+  ]) {
+    await page.evaluate((message) => window.studio.pass({ number: window.studio.session.number, ...message }), pass);
+    assert.equal(await page.textContent('#status'), line);
+  }
+});
+
+test('Tab leaves the text, and changes nothing; lines are indented by brackets', async (hand, page) => {
+  const before = hand.last().text, is_in_text = () => page.evaluate(() => document.activeElement.closest('.cm-content') !== null);
+  await hand.type_at('terminal', '');
+  for (const key of ['Tab', 'Shift+Tab']) {
+    await page.focus('.cm-content');
+    for (let i = 0; i < 3 && (await is_in_text()); ++i) await page.keyboard.press(key);
+    assert.equal(await is_in_text(), false, `${key} leaves the text`);
+    assert.equal(hand.last().text, before);
+  }
+  await page.focus('.cm-content');
+  await page.keyboard.press('Control+]');
+  await hand.until(() => hand.last().text === before.replace('  terminal', '    terminal'), 'the line is indented');
+  await page.keyboard.press('Control+[');
+  await hand.until(() => hand.last().text === before, 'and back');
+});
+
+test('a text that no file has is marked until it is saved, over a reload too', async (hand, page) => {
+  const is_marked = () => page.isVisible('#edited');
+  assert.equal(await is_marked(), false);
+  await hand.type_at('terminal', ' # more');
+  assert.ok(await is_marked());
+  assert.match(await page.title(), /^• /);
+  await page.keyboard.press('Control+z');
+  assert.equal(await is_marked(), false, 'undone, it is that of the file');
+  await page.keyboard.press('Control+Shift+z');
+  await page.keyboard.press('Control+s');
+  await hand.until(async () => !(await is_marked()), 'it is saved');
+  await page.reload();
+  await hand.settled();
+  assert.match(hand.last().text, /# more/);
+  assert.equal(await is_marked(), false);
+  await page.keyboard.press('Control+z');
+  await hand.until(is_marked, 'the file has the text of after');
+});
+
+test('on a small screen nothing is cut off, squeezed or covered', async (hand, page) => {
+  const help = await page.locator('#help').boundingBox();
+  assert.deepEqual([help.width, help.height], [30, 30]);
+  const view = await page.locator('#view').boundingBox();
+  const met = ([x, y]) => page.evaluate(([px, py]) => document.elementFromPoint(px, py).dataset.handle, [x, y]);
+  for (const share of [0.35, 0.5, 0.65]) {
+    // The mock's point lies in the middle of the picture.
+    await page.evaluate((up) => {
+      const { studio } = window, { camera } = studio;
+      studio.change({ camera: { ...camera, location: [0.1, 5 + up, 17], look_at: [0.1, 5 + up, 0] } });
+    }, 18 * (share - 0.5));
+    await page.mouse.click(view.x + view.width / 2, view.y + view.height * share);
+    await page.waitForSelector('#picked dl');
+    const dot = await hand.place_of('.point');
+    assert.equal(await met(dot), 'point', `the dot at ${dot} is covered`);
+    await page.mouse.move(...dot);
+    await page.mouse.down();
+    for (let i = 1; i <= 4; ++i) {
+      await page.mouse.move(dot[0], dot[1] + i * 30 * Math.sign(0.6 - share));
+      assert.equal(await met(await hand.place_of('.point')), 'point', 'the card makes room');
+    }
+    await page.mouse.up();
+    await hand.settled();
+    await page.keyboard.press('Control+z');
+  }
+  await page.click('#tab-vary');
+  await page.waitForSelector('#grid canvas');
+  assert.equal(await page.evaluate(() => getComputedStyle(document.querySelector('#grid canvas')).objectFit), 'contain');
+  await page.click('#help');
+  assert.match(await page.innerText('#help-page section >> nth=0'), /^Touch\s+one finger on the picture\s+orbit/, 'fingers find theirs first');
+}, { width: 390, height: 844, touch: true });
+
+test('the ring about what has the focus is whole', async (hand, page) => {
+  for (const selector of ['#place .crumb', '#place .edit', '#tab-knobs']) {
+    await page.focus(selector);
+    const cut = await page.evaluate(() => {
+      const one = document.activeElement, style = getComputedStyle(one), reach = parseFloat(style.outlineWidth) + parseFloat(style.outlineOffset);
+      const [a, b] = [one.getBoundingClientRect(), one.parentElement.getBoundingClientRect()];
+      return a.left - reach < b.left || a.right + reach > b.right || a.top - reach < b.top || a.bottom + reach > b.bottom;
+    });
+    assert.equal(cut, false, selector);
+  }
 });
 
 test('a wrong text keeps the last good picture, over a reload too', async (hand, page) => {
@@ -432,6 +547,67 @@ test('a box in space is moved, turned and sheared', async (hand, page) => {
   assert.ok(Math.hypot(...[1, 5, 9].map((i) => sheared[i] - turned[i])) > 0.01, `${turned} ${sheared}`);
 }, { opened: { name: 'solid.rifs', text: solid } });
 
+const lever = (page) => page.evaluate(() => {
+  const box = (selector) => document.querySelector(selector).getBoundingClientRect(), [a, b] = [box('.pivot'), box('.turn')];
+  return Math.hypot(a.x + a.width / 2 - b.x - b.width / 2, a.y + a.height / 2 - b.y - b.height / 2);
+});
+
+test('the view and the knob stand still under a hand that turns a map', async (hand, page) => {
+  await page.click('#tab-maps');
+  for (const name of ['frond', 'left', 'right']) {
+    await page.focus(`[data-map=${name}]`);
+    assert.ok((await lever(page)) >= 79.9, `${name} is turned by ${await lever(page)} px`);
+  }
+  await page.focus('[data-map=left]');
+  const near = async (x, y) => {
+    const [at_x, at_y] = await hand.place_of('.turn');
+    assert.ok(Math.hypot(at_x - x, at_y - y) < 1.5, `the knob lies at ${at_x} ${at_y}, the hand at ${x} ${y}`);
+  };
+  const [x, y] = await hand.place_of('.turn'), whole = await page.evaluate(() => window.studio.model.camera);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 6; ++i) {
+    await page.mouse.move(x + 3 * i, y - 4 * i);
+    await hand.settled();
+    assert.deepEqual(hand.last().camera, whole, 'the view is the one of before');
+    await near(x + 3 * i, y - 4 * i);
+  }
+  await page.mouse.up();
+  await hand.settled();
+  assert.deepEqual(hand.last().camera, whole, 'all is in view: it stays');
+  // The model leaves the view with this map.
+  const face = await page.locator('[data-map=left] .face').boundingBox(), from = [face.x + face.width / 2, face.y + face.height / 2];
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  await page.mouse.move(from[0] + 150, from[1], { steps: 5 });
+  await hand.settled();
+  assert.deepEqual(hand.last().camera, whole);
+  await page.mouse.up();
+  await hand.until(() => hand.last().camera === null, 'it is framed anew');
+  await hand.settled();
+  await page.focus('[data-map=left]');
+  await page.keyboard.press('ArrowLeft');
+  await hand.until(() => hand.last().camera !== null, 'keys keep the view');
+  await hand.knob('lean').evaluate(() => window.studio.change({ set: { lean: 3 } }));
+  await hand.until(() => hand.last().camera === null, 'another change lets the model choose');
+}, { opened: { name: 'fern.rifs', text: example.replace('# A fern', '# It fits: a fern') } });
+
+test('a map is chosen in the list by Enter, and moved by arrow keys', async (hand, page) => {
+  await page.click('#tab-maps');
+  await page.focus('[data-listed=right]');
+  await page.keyboard.press('ArrowUp');
+  await page.keyboard.press('Enter');
+  await hand.changes(() => page.keyboard.press('ArrowUp'));
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.listed), 'right');
+  const [, row] = /map right { matrix ([^}]*)/.exec(hand.last().text);
+  assert.ok(Number(row.split(',')[7]) > 0.7, row);
+  assert.equal(await page.getAttribute('[data-listed=right]', 'aria-current'), 'true');
+  await page.focus('[data-listed=stem]');
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('ArrowUp');
+  await hand.until(async () => (await page.textContent('#said')) === 'Its scale is one of a table.', 'it says why it stays');
+});
+
 test('a map is turned about its foot, or about its middle; the stem stays on the box', async (hand, page) => {
   const matrix = (name) => new RegExp(`map ${name} { matrix ([^}]*)}`).exec(hand.last().text)[1].split(',').map(Number);
   const gap = () => page.evaluate(() => {
@@ -516,6 +692,26 @@ test('a click on the picture selects its rule; the point is pulled', async (hand
   assert.match(hand.last().text, /map frond { matrix /);
 });
 
+test('a drag is one step of the history, however late it is answered', async (hand, page, session) => {
+  const [x, y] = await hand.place_of('#view');
+  await page.mouse.click(x + 5, y - 40);
+  await page.waitForSelector('#picked dl');
+  session.told.drag_ms = 1500;
+  const drag = async (place, what) => {
+    await hand.drag(place, 15, 10);
+    await hand.until(() => hand.asked(what).length === 2, 'the last place is asked for, too');
+    await hand.settled();
+    assert.notEqual(hand.last().text, example);
+    await page.keyboard.press('Control+z');
+    await hand.settled();
+    assert.equal(hand.last().text, example);
+  };
+  await drag(await hand.place_of('.point'), 'pull');
+  await page.click('#tab-maps');
+  await page.focus('[data-map=left]');
+  await drag(await hand.place_of('.corner >> nth=1'), 'map');
+});
+
 test('the grid of variations, and back', async (hand, page, session) => {
   await page.click('#tab-vary');
   await page.waitForSelector('#grid button:nth-child(9)');
@@ -540,10 +736,39 @@ test('the grid of variations, and back', async (hand, page, session) => {
   assert.deepEqual([hand.asked('thumbnail').length, await page.textContent('#grid')], [asked, says], 'it is as it was');
   await page.selectOption('#vary-kind', 'seed');
   await hand.until(() => hand.asked('vary').at(-1).kind === 'seed', 'seeds are varied');
-  assert.ok(await page.isDisabled('#vary-spread'), 'seeds are not near or far');
+  assert.ok(await page.isDisabled('#vary-spread'));
+  assert.equal(await page.textContent('#vary-why:visible'), 'Seeds are not near or far.');
+  await hand.until(async () => (await page.locator('#grid .waits').count()) === 0, 'seeds are drawn');
+  const vary_asked = hand.asked('vary').length;
+  await page.click('#vary-back');
+  assert.deepEqual([await page.textContent('#grid'), await page.inputValue('#vary-kind')], [says, 'parameters']);
+  assert.ok(!(await page.isDisabled('#vary-spread')));
   await page.click('#vary-back');
   await hand.settled();
-  assert.deepEqual(hand.last().set, {});
+  assert.deepEqual(hand.last().set, {}, 'the model of before is the middle again');
+  assert.ok(await drawn('button:nth-child(1)[aria-current=true]') === first, 'the eight are there, the chosen one marked');
+  assert.equal(await page.locator('#grid .waits').count(), 0);
+  assert.equal(hand.asked('vary').length, vary_asked, 'nothing is looked for again');
+  assert.equal(await page.isVisible('#vary-back'), false, 'there was nothing before');
+  await page.click('#grid button:nth-child(3)');
+  await hand.until(() => hand.last().set.lean === 1, 'another is chosen');
+  await hand.until(async () => (await page.locator('#grid .waits').count()) === 0, 'others come around it');
+  await page.keyboard.press('Control+z');
+  assert.ok(await drawn('button:nth-child(1)') === first, 'undo brings them back, too');
+  assert.equal(await page.locator('#grid [aria-current]').count(), 1);
+});
+
+test('who leaves the grid before its answer finds it later', async (hand, page, session) => {
+  session.told.later = true;
+  await page.click('#tab-vary');
+  await hand.until(() => session.told.vary, 'variations are asked for');
+  await page.click('#tab-knobs');
+  session.told.vary();
+  await hand.drag(await hand.place_of('#view'), 20, 0);
+  await hand.settled();
+  session.told.later = false;
+  await page.click('#tab-vary');
+  await hand.until(async () => (await page.locator('#grid button:not(.waits)').count()) === 9, 'all are drawn');
 });
 
 test('the middle is the model, however many others there are', async (hand, page, session) => {
@@ -611,8 +836,10 @@ test('a film tells what is done until its file is there', async (hand, page, ses
   await hand.until(() => session.told.film, 'the film is asked for');
   session.told.film.progress(0.5);
   const doing = () => page.textContent('#panel-time [role=status]'), bar = page.locator('progress');
-  await hand.until(async () => (await doing()) === 'Drawing: 63 of 125 pictures are there', 'pictures are counted');
+  await hand.until(async () => (await doing()) === 'Drawing: 62 of 125 pictures are there', 'pictures are counted');
   assert.equal(await bar.getAttribute('value'), '0.5');
+  session.told.film.progress(124 / 125);
+  await hand.until(async () => (await doing()) === 'Drawing the last of the 125 pictures, then writing fern.gif …', 'no other share may come');
   session.told.film.progress(1);
   await hand.until(async () => (await doing()) === 'All 125 pictures are drawn. Writing fern.gif …', 'it writes the file');
   assert.equal(await bar.getAttribute('value'), null, 'nobody knows how long that takes');
@@ -673,6 +900,36 @@ test('a part of an L-system is dragged: the number that follows is one step of t
   await hand.settled();
   assert.equal(hand.last().text, twig);
 }, { opened: { name: 'twig.lsys', text: twig } });
+
+const link_to = (model) => '#m=' + zlib.deflateRawSync(JSON.stringify(model)).toString('base64url');
+
+test('a link holds files and opens with them; one that lacks a file changes nothing', async (hand, page, session) => {
+  const files = { 'leaf.rifs': 'rifs leaf { }' };
+  session.told.files = files;
+  session.told.lacks = ['bark.png'];
+  await page.click('#link');
+  await hand.until(async () => /cannot hold bark\.png/.test(await page.textContent('#said')), 'it says what it cannot hold');
+  const link = await page.evaluate(() => navigator.clipboard.readText());
+  const before = hand.last(), text = `# use leaf\n${before.text}`;
+  const open = async (pasted) => {
+    await page.click('#tab-out');
+    await page.fill('#pasted', pasted);
+    await page.press('#pasted', 'Enter');
+  };
+  await open(link_to({ name: 'plants/x.rifs', text: text.slice(2) }));
+  await hand.until(async () => /lacks 'leaf\.rifs'/.test(await page.textContent('#said')), 'it says what the link lacks');
+  assert.equal(hand.last().name, before.name, 'the model on the page stays');
+  assert.ok(await page.isDisabled('#undo'), 'nothing changed');
+  await open(link);
+  await hand.until(() => hand.last().files?.['leaf.rifs'], 'the files go to the session');
+  assert.deepEqual(hand.last().files, files);
+  await page.reload();
+  await hand.settled();
+  assert.deepEqual(hand.last().files, files, 'they outlive a reload');
+  await open(link_to({ name: '../../etc/x.rifs', text, files: { '/etc/passwd': '', '../y': '', z: 1, 'a/b': 'c' } }));
+  await hand.until(() => hand.last().name === 'x.rifs', 'a stranger names no folder above');
+  assert.deepEqual(hand.last().files, { 'a/b': 'c' });
+});
 
 test('a reload finds everything; a link holds the model', async (hand, page, session) => {
   await hand.knob('lean').press('PageUp');

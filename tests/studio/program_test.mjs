@@ -49,7 +49,7 @@ async function serve(text = fern) {
 
 const browser = await open_browser(modules), test = tester(browser, serve);
 // The first picture is enough to begin with: the tests draw drafts.
-const small = { width: 820, height: 640, ready: '#status:not(:empty)' };
+const small = { width: 820, height: 640, ready: '#picture:not([hidden])' };
 
 test('the text, a knob, the camera; all undone', async (hand, page) => {
   const now = () => page.evaluate(() => window.studio.history.now);

@@ -240,10 +240,25 @@ await page_test('a page without a program: an error, its mending, a slider', asy
   assert.ok(!asked.includes('socket'), 'no program is asked for');
 });
 
+const link_to = (model) => '#m=' + zlib.deflateRawSync(JSON.stringify(model)).toString('base64url');
+const has_text = (page, text) => page.waitForFunction((wanted) => window.studio.history.now.text === wanted, text);
+
 const linked = scene('ifs/fern.rifs');
 await page_test('a link opens its model', async (page) => {
-  assert.equal(await page.evaluate(() => window.studio.history.now.text), linked.text);
-}, { hash: '#m=' + zlib.deflateRawSync(JSON.stringify(linked)).toString('base64url') });
+  await has_text(page, linked.text);
+}, { hash: link_to(linked) });
+
+const row = { name: 'plants/row.inst', text: 'use leaf = "leaf.inst"\nobject row { leaf }\n' };
+await page_test('a link opens with the files that its model uses', async (page) => {
+  await has_text(page, row.text);
+  await settled(page);
+  assert.doesNotMatch(await page.textContent('#finding'), /cannot open/);
+}, { hash: link_to({ ...row, files: { 'plants/leaf.inst': 'object leaf { sphere }\n' } }) });
+
+await page_test('a link that lacks a file says which, and the model on the page stays', async (page) => {
+  await page.waitForFunction(() => /lacks 'plants\/leaf\.inst'/.test(document.getElementById('said').textContent));
+  assert.notEqual(await page.evaluate(() => window.studio.history.now.text), row.text);
+}, { hash: link_to(row) });
 
 // Its lowering is one piece of work, and takes seconds.
 const slow = {

@@ -109,6 +109,8 @@ class JobCommand {
         words.insert(words.end(), {"-o", output});
         options = parse_command_line(std::move(words)).options;
         if (options) options->render.compile.lower.root = root;
+        for (const auto& [path, text] : job.files)
+            files_.set(path, text);
         files_.set(job.model.name, job.model.text);
     }
     /// Requires options.

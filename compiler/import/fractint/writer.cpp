@@ -5,22 +5,18 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "compiler/import/cpfg/dialect.h"
 #include "compiler/import/cpfg/write/writer.h"
+#include "compiler/import/drawn_steps.h"
 #include "compiler/import/foreign_text.h"
 
 namespace graftal {
 
 namespace {
-
-/// A model's order is not in its file. The translation has the largest that draws no more lines than this.
-constexpr double most_lines = 8000;
-constexpr int most_steps = 14;
 
 /// The first sixteen of Fractint's palette.
 constexpr std::array<std::string_view, 16> ega_names = {
@@ -35,37 +31,6 @@ std::string ega_colour(std::size_t number) {
         return (number & bit) != 0 ? (light ? 1 : 0.4) : (light ? 0.09 : 0);
     };
     return fmt::format("{}, {}, {}", part(4), number == 6 ? 0.09 : part(2), part(1));
-}
-
-/// The largest order that draws few lines, and how many. Counts symbols, order by order.
-std::pair<int, double> steps_to_draw(const LSystem& system) {
-    using Counts = std::array<double, 256>; // by symbols
-    const auto at = [](const LSystemModule& module) { return static_cast<unsigned char>(module.symbol[0]); };
-    const auto count = [&](const LSystemString& string, double times, Counts& into) {
-        for (const LSystemModule& module : string)
-            into[at(module)] += times;
-    };
-    const auto lines = [](const Counts& of) { return of['F'] + of['D']; };
-    const std::vector<LSystemProduction>& productions = system.productions.at(LSystemSection::productions);
-    Counts counts{};
-    count(system.axiom, 1, counts);
-    int steps = 0;
-    double drawn = lines(counts), all = 0;
-    for (int next = 1; next <= most_steps; ++next) {
-        Counts after = counts;
-        for (const LSystemProduction& production : productions)
-            after[at(production.predecessor[0])] = 0;
-        for (const LSystemProduction& production : productions)
-            count(production.successor, counts[at(production.predecessor[0])], after);
-        all = 0;
-        for (const double number : after)
-            all += number;
-        if (next > 2 && (lines(after) > most_lines || all > 100 * most_lines)) break;
-        counts = after;
-        steps = next;
-        drawn = lines(counts);
-    }
-    return {steps, drawn};
 }
 
 class FractintTurtle {
@@ -140,7 +105,7 @@ Translation write_fractint_system(const ForeignFile& file, const ForeignModel& m
     }
     dialect.settings.line(fmt::format("  angle 360/{}{}", fractint.angle, remark_text(fractint.angle_remark)),
                           fractint.angle_span);
-    const auto [steps, lines] = steps_to_draw(system);
+    const auto [steps, lines] = steps_to_draw(system, "FD");
     dialect.settings.line(
         fmt::format("  steps {}{}", steps,
                     remark_text(fmt::format("Fractint's order; with this it draws {:.0f} lines", lines))));

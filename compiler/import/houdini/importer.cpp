@@ -1,12 +1,9 @@
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/formats.h"
 #include "compiler/import/houdini/fields.h"
 #include "compiler/import/houdini/system.h"
-#include "compiler/support/path_text.h"
 
 namespace graftal {
 
@@ -18,12 +15,7 @@ std::vector<ForeignModel> houdini_models(const ForeignFile& file) {
     std::vector<std::size_t> begins;
     for (const HoudiniLine& line : houdini_lines(text, 0, text.size()))
         if (line.field == HoudiniField::premise) begins.push_back(begins.empty() ? 0 : line.line);
-    const std::string name(stem_of(file.sources.name(file.file)));
-    std::vector<ForeignModel> models;
-    for (std::size_t i = 0; i < begins.size(); ++i)
-        models.push_back({begins.size() == 1 ? name : fmt::format("{}_{}", name, i + 1),
-                          file.span(begins[i], i + 1 < begins.size() ? begins[i + 1] : text.size())});
-    return models;
+    return models_at(file, begins);
 }
 
 /// A premise and a rule.

@@ -1,6 +1,7 @@
 #include <optional>
 #include <utility>
 
+#include "compiler/import/bourke/bourke.h"
 #include "compiler/import/foreign_text.h"
 #include "compiler/import/formats.h"
 #include "compiler/import/lparser/system.h"
@@ -9,7 +10,8 @@ namespace graftal {
 
 namespace {
 
-/// Lines of depth, angle, thickness and axiom; or a keyword first, and an axiom.
+/// Lines of depth, angle, thickness and axiom; or a keyword first, and an axiom. Bourke's lines begin with
+/// the same words, and their rules have arrows.
 bool is_lparser(std::string_view text) {
     constexpr std::size_t numbers = 3;
     std::size_t statements = 0;
@@ -19,7 +21,7 @@ bool is_lparser(std::string_view text) {
         if (words.empty()) continue;
         const std::string_view word = words.substr(0, words.find_first_of(" \t"));
         if (statements == 0) keywords = is_lparser_keyword(word);
-        if (keywords && word == "axiom") return true;
+        if (keywords && word == "axiom") return !is_bourke(text);
         if (!keywords && statements == numbers) return true;
         if (!keywords && leading_number(word).length != word.size()) return false;
         // A table of numbers is another program's: one number stands on a line here, with words after it at

@@ -151,6 +151,11 @@ void LpyWays::follow(const Rest* rest, State state) {
                 state.path.spans = {line.span};
             }
             break;
+        } else if (word == "for" || word == "while") {
+            fail(line.span,
+                 fmt::format("'{}' is a loop of Python, which has no translation: below 'decomposition:', a "
+                             "module L(i) may produce one turn and L(i + 1) if i < 3",
+                             comment_text(text.substr(0, std::min<std::size_t>(colon_of(text), 60)))));
         } else if (!assign(line, state)) {
             fail(line.span, fmt::format("'{}' is Python that has no translation",
                                         comment_text(text.substr(0, word.empty() ? 20 : word.size()))));

@@ -10,9 +10,11 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/lsys/turtle/flat_model.h"
+#include "compiler/lsys/turtle/polygon_outline.h"
 #include "compiler/lsys/turtle/skin.h"
 #include "compiler/lsys/turtle/triangulate.h"
 #include "compiler/primitives/limb_sweep.h"
+#include "compiler/primitives/polygon_rings.h"
 #include "compiler/primitives/shape_parts.h"
 #include "compiler/support/number_range.h"
 
@@ -158,31 +160,40 @@ void TurtleBodies::add_taper(const Affine& start_from_turtle, Vec3 from, double 
     add_sphere(start_from_turtle, width, colour, span, sink);
 }
 
-void TurtleBodies::find_limbs() {
-    for (; known_limbs_ < graph_.objects.size(); ++known_limbs_) {
-        const Object& object = graph_.objects[known_limbs_];
-        if (object.primitive != PrimitiveKind::limb_sweep) continue;
-        if (limbs_.emplace(object.name, known_limbs_).second)
+void TurtleBodies::find_shapes() {
+    for (; known_shapes_ < graph_.objects.size(); ++known_shapes_) {
+        const Object& object = graph_.objects[known_shapes_];
+        if (!object.primitive) continue;
+        const bool is_limb = *object.primitive == PrimitiveKind::limb_sweep;
+        if (!is_limb && *object.primitive != PrimitiveKind::polygon) continue;
+        if (!shapes_.emplace(object.name, known_shapes_).second) continue;
+        if (is_limb)
             skin_triangles_ += limb_triangles(*object.primitive);
+        else
+            picture_corners_ += rings_of(*object.primitive).corners.size();
     }
+}
+
+std::optional<ObjectId> TurtleBodies::shape(PrimitiveKind kind, std::span<const double> numbers) {
+    find_shapes();
+    const std::string name = shape_name(kind, numbers);
+    if (const auto known = shapes_.find(name); known != shapes_.end()) return known->second;
+    std::string fault;
+    Object object;
+    object.name = name;
+    object.primitive = traits_of(kind).make(numbers, fault);
+    if (!object.primitive) return std::nullopt;
+    graph_.add(std::move(object));
+    find_shapes();
+    return shapes_.at(name);
 }
 
 void TurtleBodies::add_limb(const Limb& limb, int sides, BodySink sink) {
     const std::optional<LimbSkin> skin = skin_of(limb, sides);
     if (!skin || skin_triangles_ > most_skin_triangles) return;
-    find_limbs();
-    const std::string name = shape_name(PrimitiveKind::limb_sweep, skin->numbers);
-    if (!limbs_.contains(name)) {
-        std::string fault;
-        Object object;
-        object.name = name;
-        object.primitive = traits_of(PrimitiveKind::limb_sweep).make(skin->numbers, fault);
-        if (!object.primitive) return; // too thin for numbers
-        graph_.add(std::move(object));
-        find_limbs();
-    }
-    sink.instances.push_back(
-        {limbs_.at(name), skin->start_from_skin, Tint(), material(limb.colour), limb.span});
+    const std::optional<ObjectId> made = shape(PrimitiveKind::limb_sweep, skin->numbers);
+    if (!made) return; // too thin for numbers
+    sink.instances.push_back({*made, skin->start_from_skin, Tint(), material(limb.colour), limb.span});
 }
 
 std::optional<Instance> TurtleBodies::line(Vec3 end, int colour, Span span) {
@@ -229,7 +240,19 @@ void TurtleBodies::add_disc(const Affine& start_from_turtle, double diameter, in
         colour, span, sink);
 }
 
-void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink) {
+bool TurtleBodies::add_outline(std::span<const Vec3> corners, const Mat3& axes, int colour, Span span,
+                               BodySink sink) {
+    if (picture_corners_ > most_picture_corners) return false;
+    const std::optional<PolygonOutline> outline = outline_of(corners, axes);
+    if (!outline || !is_finite(outline->start_from_outline)) return false;
+    const std::optional<ObjectId> made = shape(PrimitiveKind::polygon, outline->numbers);
+    if (!made) return false; // it meets itself
+    sink.instances.push_back({*made, outline->start_from_outline, Tint(), material(colour), span});
+    return true;
+}
+
+bool TurtleBodies::add_polygon(std::span<const Vec3> corners, const Mat3& axes, int colour, Span span,
+                               BodySink sink) {
     polygon_work_ += corners.size() * corners.size() / pairs_an_instance;
     if (witness_) {
         std::vector<PlantTriangle> triangles;
@@ -239,12 +262,19 @@ void TurtleBodies::add_polygon(std::span<const Vec3> corners, int colour, Span s
             body.area += glm::length(glm::cross(corners[b] - corners[a], corners[c] - corners[a])) / 2;
         }
         body.triangles = triangles;
-        return tell(body, colour);
+        tell(body, colour);
+        return true;
     }
-    for (const auto& [a, b, c] : triangulate(corners)) {
+    const bool is_pictured = !palette_[static_cast<std::size_t>(colour)].texture.empty();
+    if (is_pictured && add_outline(corners, axes, colour, span, sink)) return true;
+    const std::vector<std::array<std::uint32_t, 3>> triangles = triangulate(corners);
+    for (const auto& [a, b, c] : triangles) {
         const Affine place = on_corners(corners[a], corners[b], corners[c]);
         if (is_finite(place)) add(PrimitiveKind::triangle, place, colour, span, sink);
     }
+    const bool splits = is_pictured && triangles.size() > 1 && !split_a_picture_;
+    split_a_picture_ = split_a_picture_ || splits;
+    return !splits;
 }
 
 void TurtleBodies::add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span,

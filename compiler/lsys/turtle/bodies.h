@@ -31,6 +31,9 @@ inline constexpr std::uint16_t open_width = 1u << 15;
 /// Most triangles of the skins of a model's limbs; each takes about 200 bytes.
 inline constexpr std::size_t most_skin_triangles = 4'000'000;
 
+/// Most corners of the different outlines of a model's pictured polygons; each takes about 500 bytes.
+inline constexpr std::size_t most_picture_corners = 1'000'000;
+
 /// Makes the instances of what a turtle draws. A turtle's frame has x to its right, y ahead, and z up, so
 /// that the canonical cylinder is a segment.
 class TurtleBodies {
@@ -64,7 +67,10 @@ class TurtleBodies {
     void add_sphere(const Affine& start_from_turtle, double diameter, int colour, Span span, BodySink sink);
     /// A flat disc about the turtle, in the plane of its heading and its left.
     void add_disc(const Affine& start_from_turtle, double diameter, int colour, Span span, BodySink sink);
-    void add_polygon(std::span<const Vec3> corners, int colour, Span span, BodySink sink);
+    /// `axes`: the turtle's right, ahead and up where the polygon began. Its picture covers it once where it
+    /// has an outline (polygon_outline.h), else each of its triangles. False if that is so for the first
+    /// time.
+    bool add_polygon(std::span<const Vec3> corners, const Mat3& axes, int colour, Span span, BodySink sink);
     void add_model(const PlacedModel& model, const Affine& start_from_turtle, Span span, BodySink sink);
 
     std::size_t packed_count() const { return run_ ? run_->size() : 0; } ///< items
@@ -87,7 +93,10 @@ class TurtleBodies {
         sink.instances.push_back(body(primitive, place, colour, span));
     }
 
-    void find_limbs();
+    void find_shapes();
+    /// The object of a shape, made where the graph has none. Nothing for numbers that make none.
+    std::optional<ObjectId> shape(PrimitiveKind kind, std::span<const double> numbers);
+    bool add_outline(std::span<const Vec3> corners, const Mat3& axes, int colour, Span span, BodySink sink);
 
     Graph& graph_;
     std::vector<Material> palette_;              ///< not empty
@@ -95,10 +104,12 @@ class TurtleBodies {
     std::shared_ptr<Run> run_;                   ///< of round bodies, or null
     WordWitness* witness_ = nullptr;
     std::unordered_map<Primitive, ObjectId> primitives_; ///< primitives used so far
-    std::unordered_map<std::string, ObjectId> limbs_;    ///< skins, by their names,
-    ObjectId known_limbs_ = 0;                           ///< among so many objects of the graph
+    std::unordered_map<std::string, ObjectId> shapes_;   ///< skins and outlines, by their names,
+    ObjectId known_shapes_ = 0;                          ///< among so many objects of the graph
     std::size_t skin_triangles_ = 0;
+    std::size_t picture_corners_ = 0;
     std::size_t polygon_work_ = 0;
+    bool split_a_picture_ = false; ///< add_polygon() has said so
 };
 
 } // namespace graftal

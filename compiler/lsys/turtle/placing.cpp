@@ -139,9 +139,9 @@ void Turtle::append_polygons(const TurtlePart& part, double scale, Span span) {
         close_polygon(end.colour, span);
     }
     record(part.vertices);
-    for (const std::vector<Vec3>& polygon : part.polygons) {
-        polygons_.emplace_back();
-        record(polygon);
+    for (const TurtlePart::OpenPolygon& polygon : part.polygons) {
+        polygons_.push_back({start_from_turtle_.linear * polygon.axes, {}});
+        record(polygon.vertices);
     }
 }
 

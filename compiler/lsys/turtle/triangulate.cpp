@@ -14,13 +14,6 @@ namespace {
 
 using Vec2 = glm::dvec2;
 
-Vec3 newell_normal(std::span<const Vec3> corners) {
-    Vec3 normal(0.0);
-    for (std::size_t i = 0; i < corners.size(); ++i)
-        normal += glm::cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
-    return normal;
-}
-
 /// Twice the signed area.
 double turn(Vec2 a, Vec2 b, Vec2 c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -137,6 +130,13 @@ class EarClipper {
 };
 
 } // namespace
+
+Vec3 newell_normal(std::span<const Vec3> corners) {
+    Vec3 normal(0.0);
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        normal += glm::cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
+    return normal;
+}
 
 std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const Vec3> corners) {
     if (corners.size() < 3) return {};

@@ -10,6 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/lsys/turtle/polygon_outline.h"
 #include "compiler/support/number.h"
 #include "compiler/support/number_range.h"
 
@@ -132,7 +133,7 @@ bool Turtle::run(TurtleCommand command, std::span<const double> parameters,
         cut();
         return true;
     case TurtleCommand::open_polygon:
-        polygons_.emplace_back();
+        polygons_.push_back({start_from_turtle_.linear, {}});
         break;
     case TurtleCommand::close_polygon:
         close_polygon(read_colour(), span);
@@ -378,7 +379,7 @@ void Turtle::record_vertex(Vec3 vertex) {
     const bool here = !polygons_.empty();
     if (!here) note(reads_polygons);
     if (!here && state_.open_polygons == 0) return;
-    std::vector<Vec3>& vertices = here ? polygons_.back() : part_.vertices;
+    std::vector<Vec3>& vertices = here ? polygons_.back().vertices : part_.vertices;
     vertices.push_back(vertex);
     longest_polygon_ = std::max(longest_polygon_, vertices.size());
 }
@@ -389,7 +390,14 @@ void Turtle::close_polygon(int colour, Span span) {
         if (context_.draws) {
             part_.has_bodies = true;
             ++bodies_;
-            context_.bodies.add_polygon(polygons_.back(), colour, span, sink(false));
+            const auto& [axes, vertices] = polygons_.back();
+            if (!context_.bodies.add_polygon(vertices, axes, colour, span, sink(false)))
+                context_.diagnostics
+                    .warning(span, "the picture covers each triangle of this polygon by itself")
+                    .with_hint(fmt::format("it covers a polygon once that is flat, does not meet itself and "
+                                           "has at most {} vertices; the model's different ones have {} "
+                                           "vertices at most",
+                                           most_outline_corners, most_picture_corners));
         }
         polygons_.pop_back();
         return;

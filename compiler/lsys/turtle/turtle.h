@@ -42,8 +42,13 @@ struct TurtlePart {
         int colour = 0;
     };
     std::vector<PolygonEnd> polygon_ends;
-    std::vector<Vec3> vertices;              ///< for the polygon that is then the innermost
-    std::vector<std::vector<Vec3>> polygons; ///< left open, with their vertices
+    std::vector<Vec3> vertices; ///< for the polygon that is then the innermost
+    /// A polygon that is open, with the axes of the turtle where it began.
+    struct OpenPolygon {
+        Mat3 axes{1.0};
+        std::vector<Vec3> vertices;
+    };
+    std::vector<OpenPolygon> polygons; ///< left open
     /// With a skin: the limb that goes on with the one at the start; then, if that ends in the part, the one
     /// that is open at the exit.
     std::vector<Limb> limbs;
@@ -83,8 +88,8 @@ struct TurtlePart {
         std::size_t count = vertices.size();
         for (const PolygonEnd& end : polygon_ends)
             count += end.vertices.size();
-        for (const std::vector<Vec3>& polygon : polygons)
-            count += polygon.size();
+        for (const OpenPolygon& polygon : polygons)
+            count += polygon.vertices.size();
         return count;
     }
 };
@@ -293,8 +298,8 @@ class Turtle {
     double width_error_ = 0;                        ///< of its logarithm, by parts before
     Limb limb_{.base = Limb::Base::entry};          ///< that ends here
     std::vector<Branch> branches_;
-    std::vector<std::vector<Vec3>> polygons_; ///< open ones, by their vertices
-    std::size_t cut_depth_ = 0;               ///< 1 + branches opened since the cut; 0: no cut
+    std::vector<TurtlePart::OpenPolygon> polygons_;
+    std::size_t cut_depth_ = 0; ///< 1 + branches opened since the cut; 0: no cut
     std::size_t vertex_count_ = 0;
     std::size_t longest_polygon_ = 0;                       ///< by vertices seen here
     std::uint64_t modules_ = 0, segments_ = 0, bodies_ = 0; ///< of run(); not of parts

@@ -5,6 +5,7 @@
 
 #include "compiler/lsys/derive/word.h"
 #include "compiler/lsys/turtle/flat_model.h"
+#include "compiler/support/stretch.h"
 
 namespace graftal {
 
@@ -106,7 +107,7 @@ void PlantBuilder::draws(const DrawnBody& body) {
 
 /// The surface of the last row, if that is made of triangles.
 void PlantBuilder::add_blade(const DrawnBody& body) {
-    PlantBlade blade{static_cast<std::uint32_t>(plant_.modules.size() - 1), 0, {}};
+    PlantBlade blade{static_cast<std::uint32_t>(plant_.modules.size() - 1), 0, {}, 0};
     if (body.organ == Organ::polygon) {
         blade.shape = static_cast<std::uint32_t>(plant_.shapes.size());
         std::vector<PlantTriangle>& triangles = plant_.shapes.emplace_back();
@@ -116,6 +117,8 @@ void PlantBuilder::add_blade(const DrawnBody& body) {
         blade.shape = shape_of(*body.graph, body.model);
         blade.world_from_shape = {frame_.world_from_part.linear * (frame_.size * body.part_from_model.linear),
                                   frame_.place(body.part_from_model.translation)};
+        blade.half_thickness =
+            half_thicknesses_[blade.shape] * largest_stretch(blade.world_from_shape.linear);
     } else {
         return;
     }
@@ -124,7 +127,12 @@ void PlantBuilder::add_blade(const DrawnBody& body) {
 
 std::uint32_t PlantBuilder::shape_of(const Graph& graph, ObjectId model) {
     const auto [known, fresh] = shapes_.try_emplace(model, static_cast<std::uint32_t>(plant_.shapes.size()));
-    if (fresh) plant_.shapes.push_back(flat_triangles(graph, model));
+    if (fresh) {
+        FlatSide side = flat_side(graph, model);
+        plant_.shapes.push_back(std::move(side.triangles));
+        half_thicknesses_.resize(plant_.shapes.size());
+        half_thicknesses_.back() = side.half_thickness;
+    }
     return known->second;
 }
 

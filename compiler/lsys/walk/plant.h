@@ -59,6 +59,7 @@ class PlantBuilder : public WordWitness {
     Plant plant_;
     std::unordered_map<SymbolId, std::uint16_t> names_;
     std::unordered_map<ObjectId, std::uint32_t> shapes_; ///< of models
+    std::vector<double> half_thicknesses_;               ///< by shape, in its own frame
     Axis axis_;
     std::vector<Axis> axes_; ///< of the branches under way
     // The module of the word under way:

@@ -51,7 +51,8 @@ class FileStream : public std::streambuf {
 class GltfWriter {
   public:
     GltfWriter(const ExportJob& job, const UnfoldedScene& scene, std::vector<bool> held)
-        : job_(job), scene_(scene), held_(std::move(held)), meshes_(scene), pictures_(job) {
+        : job_(job), scene_(scene), held_(std::move(held)), meshes_(scene, PicturePlaces::of_surfaces),
+          pictures_(job) {
         model_.asset.version = "2.0";
         model_.asset.generator = job.options.metadata.software;
         model_.buffers.emplace_back();

@@ -25,7 +25,7 @@ Rgb plain_colour(const UnfoldedScene& scene, const std::optional<MaterialId>& ma
 std::vector<GroupSurface> surfaces_of(const UnfoldedScene& scene, SceneId node, ShapeMeshes& meshes,
                                       ColoursOf colours) {
     std::vector<GroupSurface> surfaces;
-    std::map<std::tuple<std::int64_t, bool, std::array<std::uint8_t, 3>>, std::size_t> by_key;
+    std::map<std::tuple<std::int64_t, bool, bool, std::array<std::uint8_t, 3>>, std::size_t> by_key;
     walk_leaves(scene, node, {}, {}, [&](const SceneLeaf& leaf) {
         const SceneLook& look = scene.nodes[leaf.node].look;
         const Rgb colour = look.colour();
@@ -33,11 +33,13 @@ std::vector<GroupSurface> surfaces_of(const UnfoldedScene& scene, SceneId node, 
             glm::any(glm::greaterThan(glm::abs(colour - plain_colour(scene, look.material)), Rgb(0.5 / 255)));
         const std::int64_t material = look.material ? static_cast<std::int64_t>(*look.material) : -1;
         const bool own = coloured && colours == ColoursOf::surfaces;
-        const auto [known, is_new] = by_key.try_emplace(
-            {material, coloured, own ? srgb_bytes(colour) : std::array<std::uint8_t, 3>{}}, surfaces.size());
+        const PlacedShape placed(meshes.of(leaf.shape, look), leaf.world_from_shape);
+        const auto [known, is_new] =
+            by_key.try_emplace({material, coloured, placed.mesh->uv.empty(),
+                                own ? srgb_bytes(colour) : std::array<std::uint8_t, 3>{}},
+                               surfaces.size());
         if (is_new) surfaces.push_back({.material = look.material, .coloured = coloured});
         GroupSurface& surface = surfaces[known->second];
-        const PlacedShape placed(meshes.of(leaf.shape, look), leaf.world_from_shape);
         const auto first = static_cast<std::uint32_t>(surface.vertices.size());
         for (std::size_t i = 0; i < placed.mesh->vertices.size(); ++i) {
             surface.vertices.push_back(floats(placed.vertex(i)));

@@ -8,7 +8,7 @@
 
 namespace graftal {
 
-/// The part of a mesh that has one material.
+/// The part of a mesh that has one material, and places on pictures everywhere or nowhere.
 struct GroupSurface {
     std::optional<MaterialId> material;
     bool coloured = false; ///< by vertex, in place of the material's own colour

@@ -2,6 +2,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/primitives/solid.h"
 #include "runtime/export/formats/flat_files.h"
 
 namespace graftal {
@@ -20,6 +21,27 @@ Corner printed(Vec3 point, double unit_mm) {
 
 Vec3 widened_corner(const Corner& corner) {
     return {corner[0], corner[1], corner[2]};
+}
+
+/// Skins of limbs are closed by their making: to look at all of their triangles would take long.
+bool is_closed(const Primitive& primitive) {
+    return primitive == PrimitiveKind::limb_sweep || encloses_volume(primitive);
+}
+
+/// Printers want solids: a note where some surfaces are none.
+void note_open_surfaces(const ExportJob& job) {
+    const BigCount open = sum_over_leaves(
+        job.scene, [](const SceneShape& shape) { return is_closed(shape.primitive) ? 0u : 1u; });
+    if (open == 0) return;
+    const BigCount all = sum_over_leaves(job.scene, [](const SceneShape&) { return 1; });
+    job.diagnostics
+        .note(job.model,
+              fmt::format("{} of {} surfaces are not closed, as those of polygons, so that '{}' has "
+                          "open edges, which many printers refuse",
+                          in_words(open), in_words(all), job.options.output))
+        .with_hint(fmt::format("leave leaves out of the model, or give them a thickness; or choose {}, where "
+                               "--part keeps them apart from the wood",
+                               endings_with(&ExportFormat::has_parts)));
 }
 
 Status write_stl(const ExportJob& job, ExportReport& report) {
@@ -79,6 +101,7 @@ Status write_stl(const ExportJob& job, ExportReport& report) {
     if (status.ok()) status = file.close();
     if (!status.ok()) return status;
     const Vec3 size = box.empty() ? Vec3(0.0) : box.size();
+    note_open_surfaces(job);
     report.summary =
         fmt::format("{} triangles, {:.3g} x {:.3g} x {:.3g} mm", triangles, size.x, size.y, size.z);
     return file.pending().commit();

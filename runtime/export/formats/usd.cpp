@@ -17,6 +17,7 @@
 #include "runtime/export/formats/picture_copies.h"
 #include "runtime/export/formats/rigid_parts.h"
 #include "runtime/export/formats/usd_text.h"
+#include "runtime/export/united_facets.h"
 
 namespace graftal {
 
@@ -63,7 +64,7 @@ std::string matrix_text(const Affine& map) {
 class UsdWriter {
   public:
     UsdWriter(const ExportJob& job, const UnfoldedScene& scene, OutputFile& file)
-        : job_(job), scene_(scene), file_(file), meshes_(scene), pictures_(job) {}
+        : job_(job), scene_(scene), file_(file), meshes_(scene, PicturePlaces::of_surfaces), pictures_(job) {}
 
     Status write() {
         head();
@@ -466,6 +467,7 @@ Status write_usd(const ExportJob& job, ExportReport& report) {
         resolve_looks(job.scene, {most_usd_looks, wanted, TintsOn::instances}, job.model, job.diagnostics);
     job.too_large = !scene;
     if (!scene) return {};
+    unite_facets(*scene);
     if (job.options.levels) {
         // The file's root places the model's.
         scene = with_levels(*scene, std::max(*job.options.levels, 2u) - 1, most_usd_parts);

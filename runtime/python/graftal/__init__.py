@@ -241,15 +241,16 @@ class Model:
         self,
         ground_area: Optional[float] = None,
         irradiance: bool = False,
-        samples: int = 64,
+        samples: Optional[int] = None,
         progress: Optional[Progress] = None,
     ) -> "dict[str, Any]":
         """Measures of the plant: what `graftal stats --plant --json` prints; `graftal stats --help` explains the keys.
 
         `ground_area`: for the leaf area index and the share of light, in square units of the model; else the crown's convex
-        hull from above. `irradiance`: traces the light on each organ, by at most so many `samples`, as far as limits(work_s=)
-        allows. Then ["light"]["organs"] is a structured array with the rows of plant(): irradiance, where an open horizontal
-        plane has 1, irradiance_error, absorbed, and sunlit, a share (NaN where nothing is known).
+        hull from above. `irradiance`: traces the light on each organ, by so many `samples`, as far as limits(work_s=) allows;
+        None goes on until the organs' light has a standard error of 1% of its mean. Then ["light"]["organs"] is a structured
+        array with the rows of plant(): irradiance, where an open horizontal plane has 1, irradiance_error, absorbed, and
+        sunlit, a share (NaN where nothing is known).
         """
         text, organs = self._model.measures(ground_area, irradiance, samples, progress)
         measures = json.loads(text)

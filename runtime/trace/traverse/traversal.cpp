@@ -230,10 +230,8 @@ Vec3 Traversal::to_far_side_at_best() const {
     if (best_.mesh_colour || best_.is_upright) return Vec3(0.0);
     const bool is_proxy = best_.proxy_node != no_edge;
     const Primitive primitive = is_proxy ? Primitive(PrimitiveKind::sphere) : primitive_at_best();
-    // A sheet without thickness is drawn wider.
-    constexpr double thickest_of_wide = 0.5;
     const auto sheet = sheet_of(primitive, best_.world_from_leaf.affine().linear,
-                                best_.in_world ? thickest_of_wide : thickest_sheet);
+                                best_.in_world ? sheet_of_wide : SheetLimits());
     if (!sheet) return Vec3(0.0);
     return std::copysign(sheet->thickness, glm::dot(sheet->normal, ray_.direction)) * sheet->normal;
 }

@@ -2,11 +2,14 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "compiler/detail/mesh/builder.h"
+#include "compiler/primitives/mesh_file.h"
 #include "compiler/primitives/tessellate.h"
 
 namespace graftal {
@@ -47,6 +50,24 @@ TEST(TextureSpace, RunsRoundAndUpwards) {
     EXPECT_TRUE(near(at(PrimitiveKind::triangle, {-std::sqrt(3.0) / 2, -0.5, 0}), 0, 0));
     EXPECT_TRUE(near(at(PrimitiveKind::triangle, {0, 1, 0}), 0.5, 1));
     EXPECT_TRUE(near(texture_coordinates(PrimitiveKind::cylinder, {2, 3}, {1, 0.5, 0}), 0.5, 1.5));
+}
+
+TEST(TextureSpace, OfTheirOwnHaveSkinsPatchesAndSomeMeshes) {
+    std::string fault;
+    const auto limb = traits_of(PrimitiveKind::limb_sweep)
+                          .make(std::vector<double>{6, 0, 0, 0, 0, 0, 0.1, 0, 1, 0, 0.1}, fault);
+    ASSERT_TRUE(limb) << fault;
+    EXPECT_TRUE(has_texture_points(*limb));
+    MeshData data{
+        .vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .normals = {}, .triangles = {{0, 1, 2}}, .uv = {}};
+    EXPECT_FALSE(has_texture_points(mesh_primitive("plain", data)));
+    data.uv = {{{{0, 0}, {1, 0}, {0, 1}}}};
+    EXPECT_TRUE(has_texture_points(mesh_primitive("mapped", data)));
+    const auto polygon = traits_of(PrimitiveKind::polygon).make(std::vector<double>{0, 0, 1, 0, 0, 1}, fault);
+    ASSERT_TRUE(polygon) << fault;
+    for (const Primitive& other :
+         {*polygon, Primitive(PrimitiveKind::cylinder), Primitive(PrimitiveKind::cube)})
+        EXPECT_FALSE(has_texture_points(other));
 }
 
 /// Between the corners of a mesh's triangles the picture lies where it lies on the primitive.

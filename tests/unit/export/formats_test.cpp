@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -88,6 +89,22 @@ TEST(Stl, SolidsAreWatertight) {
         EXPECT_GT(facets.size(), 10u) << name;
         EXPECT_EQ(open_edges(facets), 0u) << name;
     }
+}
+
+TEST(Stl, SaysHowManySurfacesAreOpen) {
+    const auto said_of = [](const std::string& text) {
+        Exporting exporting("m.inst", text);
+        EXPECT_TRUE(exporting.to("m.stl")) << exporting.said();
+        return exporting.said();
+    };
+    const std::string leaves =
+        said_of("canonical object leaf { triangle }\nobject m {\n leaf\n leaf translate: 3, 0, 0\n"
+                " cube translate: 0, 5, 0\n}\n");
+    EXPECT_THAT(leaves, HasSubstr("2 of 3 surfaces are not closed"));
+    EXPECT_THAT(leaves, HasSubstr("--part"));
+    EXPECT_EQ(leaves.find("not closed"), leaves.rfind("not closed"));
+    EXPECT_THAT(said_of("object m {\n cube\n sphere translate: 3, 0, 0\n}\n"),
+                testing::Not(HasSubstr("not closed")));
 }
 
 TEST(Stl, IsInMillimetresWithZUp) {
@@ -370,6 +387,65 @@ TEST(Formats, ShareTheVerticesOfWhatHasAPicture) {
         EXPECT_LE(most_listed(usd, "point3f[] points = ["), vertices);
         EXPECT_THAT(exporting.read("m.gltf"), HasSubstr(fmt::format("\"count\": {}", vertices)));
     }
+}
+
+/// A turtle's polygon as one of `.inst`: its triangles have parts of one picture.
+TEST(Formats, CoverATurtlesPolygonOnce) {
+    const std::string bark = "material bark { texture: \"bark.png\" }\n";
+    const std::pair<std::string, std::string> models[] = {
+        {"m.lsys", bark + "lsys m { steps 0\n colors bark\n"
+                          " axiom {.+(28)f(0.5)-(28)f(0.4)-(40)f(0.35)-(104)f(0.35)-(40)f(0.4)}\n}\n"},
+        {"m.inst", bark + "object m { polygon(0,0, -0.2347,0.4415, -0.2347,0.8415, -0.0098,1.1096,"
+                          " 0.196,0.8264, 0.1681,0.4274) material: bark }\n"}};
+    for (const auto& [name, text] : models) {
+        Exporting exporting(name, text);
+        write_bark(exporting);
+        ASSERT_TRUE(exporting.to("m.obj")) << exporting.said();
+        const std::string obj = exporting.read("m.obj");
+        const std::vector<std::string> places = lines_after(obj, "v "), points = lines_after(obj, "vt ");
+        ASSERT_EQ(places.size(), 6u) << name;
+        ASSERT_EQ(points.size(), 6u) << name;
+        for (std::size_t i = 0; i < 6; ++i) {
+            double x = 0, y = 0, u = 0, v = 0;
+            ASSERT_EQ(std::sscanf(places[i].c_str(), "%lf %lf", &x, &y), 2);
+            ASSERT_EQ(std::sscanf(points[i].c_str(), "%lf %lf", &u, &v), 2);
+            EXPECT_NEAR(u, (x + 0.2347) / (0.196 + 0.2347), 1e-3) << name << places[i];
+            EXPECT_NEAR(v, y / 1.1096, 1e-3) << name << places[i];
+        }
+    }
+}
+
+/// Bark can be put on later.
+TEST(Formats, KeepThePlacesOfSkinsWithoutAPicture) {
+    const auto model = [](const std::string& look, const std::string& more) {
+        return "material rind { " + look + " }\nlsys m {\n skin 0.05\n width 0.4\n colors rind\n steps 0\n" +
+               " axiom F+(20)F" + more + "\n}\n";
+    };
+    const auto places = [](Exporting& exporting) {
+        EXPECT_TRUE(exporting.to("m.usda")) << exporting.said();
+        const std::string usd = exporting.read("m.usda");
+        const std::size_t at = usd.find("primvars:st = [");
+        return at == std::string::npos ? std::string() : usd.substr(at, usd.find(']', at) - at);
+    };
+    Exporting plain("m.lsys", model("color: 0.4, 0.3, 0.2", ""));
+    Exporting pictured("m.lsys", model("texture: \"bark.png\"", ""));
+    write_bark(pictured);
+    EXPECT_GT(places(plain).size(), 100u);
+    EXPECT_EQ(places(plain), places(pictured));
+    ASSERT_TRUE(plain.to("m.obj")) << plain.said();
+    EXPECT_TRUE(lines_after(plain.read("m.obj"), "vt ").empty());
+    // A ball of the same material stays without.
+    Exporting mixed("m.lsys", model("color: 0.4, 0.3, 0.2", "@O(2)"));
+    ASSERT_TRUE(mixed.to("m.gltf")) << mixed.said();
+    const std::string gltf = mixed.read("m.gltf");
+    const auto count_of = [&](const std::string& words) {
+        std::size_t count = 0;
+        for (std::size_t at = gltf.find(words); at != std::string::npos; at = gltf.find(words, at + 1))
+            ++count;
+        return count;
+    };
+    EXPECT_EQ(count_of("\"POSITION\""), 2u);
+    EXPECT_EQ(count_of("\"TEXCOORD_0\""), 1u);
 }
 
 /// A limit below three corners for each triangle holds the file all the same.

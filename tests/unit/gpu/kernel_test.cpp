@@ -237,6 +237,29 @@ TEST(GpuKernel, LeavesTranslucentSheetsToTheNativeEngine) {
     EXPECT_TRUE(draws({1, 0.1, 1}, 0.5));
 }
 
+TEST(GpuKernel, LeavesTranslucentSolidsThatTheirHoldersFlatten) {
+    for (const bool holds_rod : {false, true}) {
+        Graph graph = test::empty_graph();
+        graph.materials = {Material{.name = "leaf", .translucency = 0.5}};
+        const ObjectId blade = graph.primitive(PrimitiveKind::triangle);
+        const ObjectId rod = graph.primitive(PrimitiveKind::cylinder);
+        Object object;
+        object.name = "holder";
+        const ObjectId holder = graph.add(std::move(object));
+        test::place(graph, holder, blade, Affine());
+        test::place(graph, holds_rod ? holder : graph.root, rod, Affine::scale({0.01, 1, 0.01}));
+        test::place(graph, graph.root, holder, Affine::scale({1, 1, 0.1}));
+        for (Instance& instance : graph.objects[graph.root].instances)
+            instance.material = 0;
+        const auto model = test::traced(graph, {});
+        std::string why;
+        const auto flat =
+            flat_model({model->prepared, model->view, model->options, model->textures, {}, {}}, why);
+        EXPECT_EQ(flat.has_value(), !holds_rod);
+        EXPECT_EQ(why, holds_rod ? "translucent solids as thin as a sheet" : "");
+    }
+}
+
 TEST(GpuKernel, HasTheRandomNumbersOfTheNativeEngine) {
     for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{0x123456789abcdef}})
         for (const std::uint32_t index : {0u, 1u, 77u}) {

@@ -46,6 +46,7 @@ const std::vector<Format>& formats() {
          "(", ")", "M%(x) --> M%(x)A(x)\n"},
         {"a.txt", "Premise: A(1)\nGenerations: 3\nRule 1: A(", ")=F(", ")A\nAngle: 9\n", "(", ")",
          "Rule %: A(x)=FA(x)\n"},
+        {"b.txt", "axiom = F", "\nF -> F[+", "]F\nangle = 60\niterations = 3\n", "[", "]", "F -> FF\n"},
         {"a.cfdg", "startshape A\nshape ", " { SQUARE [] }\nshape A { SQUARE [x ", "] }\n", "(", ")",
          "shape M% { A [s 0.5] }\n"},
     };

@@ -175,6 +175,7 @@ const std::vector<std::pair<std::string, std::string>> texts = {
     {"es", "set maxdepth 3\nr\nrule r {\n box\n { x -1 s 0.9 } r\n}\n"},
     {"lpy", "Axiom: F\nderivation length: 2\nproduction:\nF --> F-F\nendlsystem\n"},
     {"txt", "Premise: F\nGenerations: 2\nRule 1: F=F-F\n"},
+    {"txt", "axiom = F\niterations = 2\nangle = 90\nF -> F-F\n"},
     {"cfdg", "startshape a\nshape a { SQUARE [x -1] }\n"}};
 
 TEST(Importers, TheBytesOfATextDoNotMatter) {

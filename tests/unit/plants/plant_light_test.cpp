@@ -213,6 +213,78 @@ TEST(PlantLight, IsTheSameForAnyThreads) {
         EXPECT_EQ(one.light->organs[i].light, three.light->organs[i].light);
 }
 
+// Discs of radius 0.8 and 1.3, at a distance of 0.9 (Howell, C-41): sides of the lower one see the upper one.
+TEST(PlantLight, TakesSamplesUntilTheErrorIsSmall) {
+    const std::string pair = "axiom [&(90)@o(1.6)][@M(0,0.9,0)&(90)@o(2.6)]";
+    const LitPlant discs = lit(plant_text(black, pair), std::nullopt);
+    ASSERT_TRUE(discs.light) << discs.messages;
+    const double lower = 0.8 / 0.9, upper = 1.3 / 0.9, x = 1 + (1 + upper * upper) / (lower * lower);
+    const double factor = (x - std::sqrt(x * x - 4 * std::pow(upper / lower, 2))) / 2;
+    EXPECT_NEAR(discs.at(0), 1 - factor, 0.01);
+    EXPECT_NEAR(discs.at(1), 1, 1e-6);
+    const double error = std::sqrt((std::pow(discs.error(0), 2) + std::pow(discs.error(1), 2)) / 2);
+    EXPECT_LE(error, 0.01 * (discs.at(0) + discs.at(1)) / 2);
+    EXPECT_GT(discs.light->samples, 64);
+    EXPECT_LT(discs.light->work_seconds, 10);
+    const LitPlant asked = lit(plant_text(black, pair), 64), sure = lit(plant_text(black, level_square), {});
+    ASSERT_TRUE(asked.light && sure.light);
+    EXPECT_EQ(asked.light->samples, 64) << "so many were asked for";
+    EXPECT_EQ(sure.light->samples, 64) << "no sample differs from another";
+    // The work ends it, too, and the same work always at the same samples.
+    const double work_seconds = 0.4 * discs.light->work_seconds;
+    const LitPlant less = lit(plant_text(black, pair), {}, 1, work_seconds);
+    ASSERT_TRUE(less.light) << less.messages;
+    EXPECT_LT(less.light->samples, discs.light->samples);
+    EXPECT_LE(less.light->work_seconds, work_seconds);
+    EXPECT_EQ(lit(plant_text(black, pair), {}, 3, work_seconds).light->samples, less.light->samples);
+}
+
+// A disc is a leaf, whether a turtle draws it or a model that it places.
+TEST(PlantLight, OnModelsThatAreDiscs) {
+    const auto block = [](const std::string& body, const std::string& placed) {
+        return black + "lsys blade {\n steps 0\n colors leaf\n axiom " + body +
+               "\n}\nmain lsys s {\n steps 0\n axiom &(90)" + placed + "\n}\n";
+    };
+    const LitPlant disc = lit(block("@o(2)", "~blade"), 64);
+    ASSERT_TRUE(disc.light) << disc.messages;
+    ASSERT_EQ(disc.light->lit_organs, 1u);
+    EXPECT_NEAR(disc.plant->modules[0].area, pi, 1e-9);
+    EXPECT_NEAR(disc.light->falls.amount, pi, 1e-6);
+    EXPECT_NEAR(disc.at(0), 1, 1e-6);
+    const LitPlant stretched = lit(block("@o(2)", "~blade(3,0.5,2)"), 64);
+    ASSERT_TRUE(stretched.light) << stretched.messages;
+    EXPECT_NEAR(stretched.plant->modules[0].area, 1.5 * pi, 1e-9);
+    EXPECT_NEAR(stretched.light->falls.amount, 1.5 * pi, 1e-6);
+    const LitPlant flower = lit(block("[@o(2)][f(3)@o(4)][+f(3)" + square(1) + "]", "~blade(0.5)"), 64);
+    ASSERT_TRUE(flower.light) << flower.messages;
+    EXPECT_NEAR(flower.plant->modules[0].area, (5 * pi + 1) / 4, 1e-9);
+    // A disc over another takes its light.
+    const LitPlant pair = lit(block("@o(2)", "[~blade][^(90)f(0.01)&(90)~blade]"), 1024);
+    ASSERT_TRUE(pair.light) << pair.messages;
+    EXPECT_NEAR(pair.light->falls.amount, pi, 0.05);
+    EXPECT_FALSE(lit(block("@O(2)", "~blade"), 64).plant->modules[0].is_measured) << "a ball is no leaf";
+}
+
+// Parts that chance makes are shared: where chance alone says where they stand, they lie in each other.
+TEST(PlantLight, WarnsOfOrgansThatLieInOthers) {
+    const std::string grove = "lsys a {\n steps 9\n axiom A\n A -> AA\n interpret A -> [@M(random(0,80),0,"
+                              "random(0,80))&(90)@o(1)]\n}\n";
+    const LitPlant shared = lit(grove, 4), exact = lit(grove, 4, 1, 1000, true);
+    ASSERT_TRUE(shared.light && exact.light);
+    EXPECT_NE(shared.messages.find("448 of 512 organs lie exactly in others"), std::string::npos)
+        << shared.messages;
+    EXPECT_NE(shared.messages.find("--exact"), std::string::npos);
+    EXPECT_EQ(exact.messages.find("lie exactly"), std::string::npos) << exact.messages;
+    const std::string tree = "lsys a {\n width 0.1\n steps 6\n axiom A\n"
+                             " A -> F(1)[+(random(20,40))A][-(random(20,40))A]\n}\n";
+    const LitPlant apart = lit(tree, 4);
+    ASSERT_TRUE(apart.light) << apart.messages;
+    EXPECT_EQ(apart.messages.find("lie exactly"), std::string::npos) << apart.messages;
+    const std::string twice = "axiom [&(90)" + square(1) + "][&(90)" + square(1) + "]";
+    EXPECT_EQ(lit(plant_text(black, twice), 4).messages.find("lie exactly"), std::string::npos)
+        << "the author says so";
+}
+
 TEST(PlantLight, KeepsToItsWork) {
     const std::string text = plant_text(green, layer(300, 0.3, false));
     const LitPlant whole = lit(text, 64);
@@ -221,6 +293,10 @@ TEST(PlantLight, KeepsToItsWork) {
     ASSERT_TRUE(part.light) << part.messages;
     EXPECT_LT(part.light->samples, 64);
     EXPECT_NE(part.messages.find("samples of its light, not 64"), std::string::npos) << part.messages;
+    const LitPlant usual = lit(text, {}, 1, 0.3 * whole.light->work_seconds);
+    ASSERT_TRUE(usual.light) << usual.messages;
+    EXPECT_EQ(usual.light->samples, part.light->samples);
+    EXPECT_EQ(usual.messages, part.messages);
     const LitPlant none = lit(text, 64, 1, 0.01 * whole.light->work_seconds);
     EXPECT_FALSE(none.light);
     EXPECT_NE(none.messages.find("seconds of work"), std::string::npos) << none.messages;

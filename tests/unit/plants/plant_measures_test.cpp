@@ -66,8 +66,26 @@ TEST(PlantMeasures, OfALevelLeaf) {
         EXPECT_NEAR(some.leaf_area, 4 * std::sin(some.elevation_deg * std::numbers::pi / 180), 1e-9);
     EXPECT_NEAR(measures_of("axiom " + square(1)).leaf_inclination_deg, 90, 1e-9);
     EXPECT_NEAR(measures_of("axiom &(50)" + square(1)).leaf_inclination_deg, 40, 1e-9);
-    EXPECT_NEAR(measures_of("axiom &(90)@o(2)").crown_area, std::numbers::pi, 0.03 * std::numbers::pi)
-        << "a disc, as a polygon of 16";
+}
+
+/// Within 0.1 % of the circles and ellipses, and of what lies between them.
+TEST(PlantMeasures, CrownsOfRoundOrgansHaveTheAreaOfTheirCircles) {
+    constexpr double pi = std::numbers::pi;
+    const auto crown = [](const std::string& block) { return measures_of(block).crown_area; };
+    EXPECT_NEAR(crown("axiom &(90)@o(2)"), pi, 1e-9);
+    EXPECT_NEAR(measures_of("axiom &(90)@o(2)").all.leaf_area, crown("axiom &(90)@o(2)"), 1e-9);
+    EXPECT_NEAR(crown("axiom @O(2)"), pi, 1e-9);
+    EXPECT_NEAR(crown("axiom !(2)F(5)"), pi, 1e-9) << "a trunk";
+    EXPECT_NEAR(crown("axiom &(30)@o(2)"), pi / 2, 1e-9) << "a disc that stands nearly upright";
+    EXPECT_NEAR(crown("axiom @o(2)"), 0, 1e-9);
+    for (const int turn : {0, 3, 17, 45}) {
+        const std::string there = "axiom \\(" + std::to_string(turn) + ")&(90)";
+        EXPECT_NEAR(crown(there + "@O(2)f(6)@O(2)"), pi + 12, 0.001 * (pi + 12)) << turn;
+        EXPECT_NEAR(crown(there + "@o(2)f(6)@o(2)"), pi + 12, 0.001 * (pi + 12)) << turn;
+    }
+    const double upward = std::sin(pi / 4) * std::cos(pi / 9); // of the disc's normal
+    EXPECT_NEAR(measures_of("axiom +(20)&(45)@o(2)").height, 2 * std::sqrt(1 - upward * upward), 1e-9);
+    EXPECT_NEAR(crown("axiom !(0)F(5)&(90)F(3)"), 0, 1e-9);
 }
 
 TEST(PlantMeasures, OfLeavesThatAreModels) {
@@ -114,6 +132,21 @@ TEST(PlantMeasures, OutlineIsTheConvexHull) {
         outline.add(corner);
     EXPECT_NEAR(outline.area(), 8, 1e-12);
     EXPECT_EQ(Outline().area(), 0);
+}
+
+TEST(PlantMeasures, OutlineKeepsWhatNothingSurrounds) {
+    Outline outline;
+    for (int i = 0; i < 3000; ++i) // a disc of many, and then others around it
+        outline.add_ellipse({std::cos(i * 0.7) * (i % 7) / 6, std::sin(i * 0.7) * (i % 7) / 6}, {0.5, 0},
+                            {0, 0.5});
+    EXPECT_NEAR(outline.area(), 2.25 * std::numbers::pi, 0.001 * 2.25 * std::numbers::pi);
+    for (const glm::dvec2 centre : {glm::dvec2(9, 0), {0, 9}, {-9, 0}, {0, -9}})
+        outline.add_ellipse(centre, {1, 0}, {0, 1});
+    const double diamond = 162 + 4 * 9 * std::numbers::sqrt2 + std::numbers::pi;
+    EXPECT_NEAR(outline.area(), diamond, 0.001 * diamond);
+    outline.add_ellipse({9, 9}, {0, 0}, {0, 0});
+    outline.add({-9, -9});
+    EXPECT_GT(outline.area(), diamond);
 }
 
 /// Each key that is printed is one of measures_keys(), which the help explains.

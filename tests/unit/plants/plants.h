@@ -39,10 +39,10 @@ inline std::shared_ptr<const Plant> plant_of(const std::string& text) {
     return plant;
 }
 
-/// Lights the plant with `most_samples` samples of each organ, unless `work_seconds` are too few. `exact`: as
-/// --exact derives it.
-inline LitPlant lit(const std::string& text, int most_samples, int threads = 1, double work_seconds = 1000,
-                    bool exact = false) {
+/// Lights the plant with so many samples of each organ, or nothing as commands do, unless `work_seconds` are
+/// too few. `exact`: as --exact derives it.
+inline LitPlant lit(const std::string& text, std::optional<int> samples, int threads = 1,
+                    double work_seconds = 1000, bool exact = false) {
     PictureSession session("m.lsys");
     session.edit(text);
     Compilation compilation;
@@ -52,8 +52,7 @@ inline LitPlant lit(const std::string& text, int most_samples, int threads = 1, 
     LitPlant found;
     found.plant = plant_of_model(session, options.compile, "no plant", compilation);
     if (found.plant)
-        found.light =
-            light_of_model(session, options, *found.plant, {most_samples, work_seconds}, compilation);
+        found.light = light_of_model(session, options, *found.plant, {samples, work_seconds}, compilation);
     found.messages = compilation.diagnostics.render(compilation.sources);
     return found;
 }

@@ -24,9 +24,21 @@ TEST(Sheet, IsAThinSolid) {
         const auto ball = sheet_of(PrimitiveKind::sphere, turned({1, 2, 0.002}, scale));
         ASSERT_TRUE(ball);
         EXPECT_NEAR(ball->thickness / scale, 0.004, 1e-7);
-        EXPECT_FALSE(sheet_of(PrimitiveKind::cylinder, turned({1, 0.02, 1}, scale)));
+        EXPECT_FALSE(sheet_of(PrimitiveKind::cylinder, turned({1, 0.06, 1}, scale)));
     }
-    EXPECT_TRUE(sheet_of(PrimitiveKind::cylinder, turned({1, 0.02, 1}), 0.03));
+    EXPECT_TRUE(sheet_of(PrimitiveKind::cylinder, turned({1, 0.06, 1}), sheet_of_wide));
+}
+
+// A turtle's disc has the half axes 0.5, 0.5 and the thickness 0.001.
+TEST(Sheet, IsADiscThatIsStretched) {
+    for (const Vec3 size : {Vec3(1.5, 0.1, 3), Vec3(0.02, 1, 0.1414), Vec3(0.5, 0.5, 4), Vec3(1, 0.01, 1),
+                            Vec3(0.0005, 1, 0.02)}) {
+        const Mat3 disc = turned({0.5 * size.x, 0.001 * size.z, 0.5 * size.y});
+        const auto sheet = sheet_of(PrimitiveKind::cylinder, disc);
+        ASSERT_TRUE(sheet) << size.x << " " << size.y << " " << size.z;
+        EXPECT_NEAR(sheet->thickness, 0.001 * size.z, 1e-12);
+        EXPECT_NEAR(std::abs(glm::dot(sheet->normal, tilt.linear[1])), 1, 1e-9);
+    }
 }
 
 TEST(Sheet, HasNoThicknessWhereTheMapIsSingular) {
@@ -39,7 +51,9 @@ TEST(Sheet, HasNoThicknessWhereTheMapIsSingular) {
 }
 
 TEST(Sheet, IsNoLineNorPointNorSurface) {
-    EXPECT_FALSE(sheet_of(PrimitiveKind::cylinder, turned({0.001, 1, 0.001})));
+    for (const double width : {0.1, 0.001, 1e-6}) // rods, round and half as thick as wide
+        for (const double flat : {1.0, 0.5})
+            EXPECT_FALSE(sheet_of(PrimitiveKind::cylinder, turned({width, 1, flat * width}))) << width;
     EXPECT_FALSE(sheet_of(PrimitiveKind::sphere, turned({0, 1, 0})));
     EXPECT_FALSE(sheet_of(PrimitiveKind::sphere, Mat3(0.0)));
     EXPECT_FALSE(sheet_of(PrimitiveKind::triangle, turned({1, 1, 0.001})));

@@ -123,6 +123,72 @@ TEST_F(Drag, ATurnWithoutANumberReadsTheAngleOfTheBlock) {
     EXPECT_NEAR(std::stod(change["edits"][0]["text"].get<std::string>()), 65, 1);
 }
 
+/// A twig that leaves its stem at (0, 1), and leans as its rules say.
+std::string leaning_twig(const std::string& rules, const std::string& let = "") {
+    return "camera { location: 0, 1, 6  look_at: 0, 1, 0  angle: 40 }\n" + let +
+           "lsys twig {\n  steps 2\n  axiom A\n" + rules + "}\n";
+}
+
+class ChanceDrag : public Drag {
+  protected:
+    /// Shows a model whose twig leans by chance, and drags it to lean by 15 degrees more.
+    json leant(const std::string& text) {
+        show(text);
+        for (int angle_deg = -20; angle_deg <= 20; ++angle_deg) {
+            const json part = picked(middle(angle_deg, 1).x, middle(angle_deg, 1).y);
+            if (!part.contains("part")) continue;
+            const Vec3 point = part_place(part["point"]);
+            const double leans_deg = glm::degrees(std::atan2(-point.x, point.y - 1));
+            const double more_deg = leans_deg < 0 ? -15 : 15;
+            return dragged(part, point + middle(leans_deg + more_deg, 1) - middle(leans_deg, 1));
+        }
+        ADD_FAILURE() << "the twig is nowhere";
+        return {};
+    }
+    static double size_of(const json& change) {
+        return std::abs(std::stod(change["edits"][0]["text"].get<std::string>()));
+    }
+};
+
+TEST_F(ChanceDrag, TheMeanOfAChanceChangesAndNotItsDeviation) {
+    const std::string text = leaning_twig("  A -> F(1)[+(normal(0, 5))F(1)]\n");
+    const json change = leant(text);
+    ASSERT_EQ(change["edits"].size(), 1u) << change;
+    EXPECT_EQ(change["edits"][0]["from"], text.find("0, 5)"));
+    EXPECT_NEAR(size_of(change), 15, 1);
+}
+
+TEST_F(ChanceDrag, ALetThatIsADeviationStays) {
+    const std::string text = leaning_twig("  A -> F(1)[+(normal(0, wide))F(1)]\n", "let wide = 5\n");
+    const json change = leant(text);
+    ASSERT_EQ(change["edits"].size(), 1u) << change;
+    EXPECT_EQ(change["edits"][0]["from"], text.find("0, wide"));
+}
+
+TEST_F(ChanceDrag, ANumberThatRulesHandOnToADeviationStays) {
+    const std::string text = leaning_twig("  A -> F(1)[B(5)]\n  B(s) -> [+(normal(0, s))F(1)]\n");
+    const json change = leant(text);
+    ASSERT_EQ(change["edits"].size(), 1u) << change;
+    EXPECT_EQ(change["edits"][0]["from"], text.find("0, s)"));
+}
+
+TEST_F(ChanceDrag, AFactorOfAChanceWithoutAMeanStays) {
+    const std::string text = leaning_twig("  A -> F(1)[+(5*normal(0, 1))F(1)]\n");
+    const json change = leant(text);
+    ASSERT_EQ(change["edits"].size(), 1u) << change;
+    EXPECT_EQ(change["edits"][0]["from"], text.find("0, 1)")) << "the mean of the chance";
+    EXPECT_NEAR(size_of(change), 3, 0.2);
+}
+
+TEST_F(ChanceDrag, BoundsOfAChanceFollowWhereNothingElseDoes) {
+    const std::string text = leaning_twig("  A -> F(1)[+(random(-5, 5))F(1)]\n");
+    const json change = leant(text);
+    ASSERT_EQ(change["edits"].size(), 1u) << change;
+    const auto from = change["edits"][0]["from"].get<std::size_t>();
+    EXPECT_GE(from, text.find("-5, 5)"));
+    EXPECT_LE(from, text.find("5))F"));
+}
+
 TEST_F(Drag, WhatTheRulesCannotDoIsRefused) {
     show(twig);
     const json part = picked(0, 0.5);

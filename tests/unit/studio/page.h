@@ -19,11 +19,12 @@ class MemoryHome final : public StudioHome {
   public:
     std::string name() const override { return "browser"; }
     std::string version() const override { return "test"; }
-    OpenedModel opened() const override { return {"crystal.rifs", "rifs crystal { }"}; }
+    OpenedModel opened() const override { return model; }
     const Files& files() const override { return texts; }
     std::string root() const override { return folder; }
     const Workers& workers(int) override { return alone; }
 
+    OpenedModel model{"crystal.rifs", "rifs crystal { }"};
     MemoryFiles texts;
     std::string folder; ///< out of which no file is used; "": any may be
     SerialWorkers alone;

@@ -56,5 +56,27 @@ TEST(MemoryFiles, KnowWhatLiesInAFolder) {
     EXPECT_TRUE(files.lies_in("/a", "/"));
 }
 
+/// A disk on which the folder "." is "/models".
+class StartedInModels final : public Files {
+  public:
+    Status check(const std::string&) const override { return Status::failure("none"); }
+    Status read(const std::string&, std::string&) const override { return Status::failure("none"); }
+    FileStamp stamp(const std::string&) const override { return {}; }
+    bool lies_in(const std::string& path, const std::string& folder) const override {
+        return folder == "." && path.starts_with("/models/");
+    }
+};
+
+TEST(MemoryFiles, ATextOverADiskLiesWhereItsPathLeads) {
+    const StartedInModels disk;
+    MemoryFiles texts(&disk);
+    texts.set("/models/a", "");
+    texts.set("/b", "");
+    EXPECT_TRUE(texts.lies_in("/models/a", "."));
+    EXPECT_TRUE(texts.lies_in("/models/c", "."));
+    EXPECT_FALSE(texts.lies_in("/b", "."));
+    EXPECT_TRUE(texts.lies_in("/b", "/")) << "a text of no disk";
+}
+
 } // namespace
 } // namespace graftal

@@ -13,7 +13,7 @@ namespace graftal {
 PlantLightOptions light_options(const Options& options) {
     PlantLightOptions light;
     light.work_seconds = options.render.work_seconds.value_or(inspecting_seconds);
-    light.most_samples = options.render.samples.value_or(light.most_samples);
+    light.samples = options.render.samples;
     return light;
 }
 

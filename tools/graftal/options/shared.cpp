@@ -283,8 +283,10 @@ void add_irradiance(CLI::App& app, Options& options) {
                  "where it names no light. An open horizontal plane has 1");
     add_value(
         app, "--samples", "N",
-        fmt::format("With --irradiance: most samples of each organ, as far as --work allows (default {})",
-                    PlantLightOptions().most_samples),
+        fmt::format(
+            "With --irradiance: samples of each organ, as far as --work allows (default: {}, and more "
+            "until the organs' light has a standard error of {:g}% of its mean)",
+            PlantLightOptions::usual_samples, 100 * PlantLightOptions::enough_error),
         "a whole number from 4 to 65536",
         [](const std::string& text) { return parse_whole(text, 4, 65'536); },
         [&options](std::uint64_t samples) { options.render.samples = static_cast<int>(samples); })

@@ -220,7 +220,9 @@ std::string CpfgWords::own_text_of(const LSystemModule& module, Span span, bool 
     if (symbol[0] == '~') return surface(module, span);
     if (symbol[0] == '?') return query(module, span);
     if (symbol == "$") {
-        names_.error(span, "sub-L-systems ($) have no translation");
+        names_.file()
+            .diagnostics.error(span, "sub-L-systems ($) have no translation")
+            .with_hint("in cpfg '@v' rolls the turtle to the horizontal, as '$' does in ABOP");
         return "";
     }
     if (symbol == "!" || symbol == "#") return width(module, span);

@@ -1,6 +1,6 @@
 // The text of the model, by CodeMirror.
 import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap, type CompletionContext, type CompletionResult } from '@codemirror/autocomplete';
-import { defaultKeymap, indentWithTab } from '@codemirror/commands';
+import { defaultKeymap } from '@codemirror/commands';
 import { bracketMatching, indentOnInput, indentUnit } from '@codemirror/language';
 import { lintKeymap, setDiagnostics, type Diagnostic } from '@codemirror/lint';
 import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search';
@@ -58,9 +58,8 @@ export class Editor {
             { key: 'F12', run: (view) => (void this.to_definition(view.state.selection.main.head), true) },
             { key: 'F2', run: open_rename },
             { key: 'Shift-Alt-f', run: () => (void this.format(), true) },
+            // Tab leaves the text, as it leaves other fields: Mod-] and Mod-[ of the default keys indent.
             ...closeBracketsKeymap, ...completionKeymap, ...searchKeymap, ...lintKeymap, ...defaultKeymap,
-            // Tab indents; Escape, then Tab leaves the text (as CodeMirror has it).
-            indentWithTab,
           ]),
         ],
       }),

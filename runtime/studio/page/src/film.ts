@@ -5,6 +5,9 @@ import type { Studio } from './studio';
 
 type Values = Record<string, number>;
 
+/** The session tells shares of a file by hundredths: after this one, it may tell no other before the file is there. */
+export const nearly_whole = 0.99;
+
 /** The values of the knobs at a time, straight from key to key; before the first and after the last they stay. */
 export function values_at(keys: KeyFrame[], seconds: number): Values {
   const values: Values = {};
@@ -59,6 +62,8 @@ export class Film {
   private readonly command = element('pre', { tabindex: 0, role: 'region', 'aria-label': 'Command line of the film' });
   private readonly soon_command = soon(() => void this.show_command(), 300);
   private file_id = 0;
+  /** The film that is being written. */
+  private making = { frames: 0, file: '' };
 
   constructor(private readonly studio: Studio, private readonly course: () => Course) {
     for (const input of [this.fps, this.width, this.kind]) input.onchange = () => this.show();
@@ -107,13 +112,13 @@ export class Film {
 
   /** The share of a file under way. */
   progress(share: number): void {
-    const { frames } = this, drawn = Math.round(share * frames);
-    if (drawn < frames) {
+    const { frames, file } = this.making, drawn = Math.floor(share * frames + 1e-6);
+    if (share < nearly_whole) {
       this.bar.value = share;
-      this.doing.textContent = `Drawing: ${drawn} of ${frames} pictures are there`;
+      this.doing.textContent = share > 0 ? `Drawing: ${drawn} of ${frames} pictures are there` : `Looking at the model at all moments, then drawing ${frames} pictures …`;
     } else {
       this.bar.removeAttribute('value');
-      this.doing.textContent = `All ${frames} pictures are drawn. Writing ${this.output} …`;
+      this.doing.textContent = drawn < frames ? `Drawing the last of the ${frames} pictures, then writing ${file} …` : `All ${frames} pictures are drawn. Writing ${file} …`;
     }
   }
 
@@ -174,6 +179,7 @@ export class Film {
     this.save.disabled = true;
     this.cancel.hidden = this.work.hidden = false;
     this.bar.value = 0;
+    this.making = { frames: this.frames, file: this.output };
     this.doing.textContent = 'Beginning …';
     try {
       const written = studio.session.ask('write', { ...(folder ? { path: this.output } : { suffix: this.kind.value }), ...this.size, film: this.film() });

@@ -18,7 +18,14 @@ const parts: [string, [string, string][]][] = [
     ['F12, or Ctrl and click', 'go to the definition'],
     ['F2', 'rename'],
     ['Shift+Alt+F', 'format'],
-    ['Escape, then Tab', 'leave the text'],
+    ['Ctrl+] and Ctrl+[', 'indent lines more, and less'],
+    ['Tab', 'leave the text'],
+  ]],
+  ['Touch', [
+    ['one finger on the picture', 'orbit; pan a flat model'],
+    ['two fingers', 'zoom, about the place between them'],
+    ['a tap', 'select the rule in the text'],
+    ['one finger on the dot, a box or its handles', 'drag it, as a mouse does'],
   ]],
   ['Knobs', [
     ['drag, or arrow keys', 'change; with Shift finer'],
@@ -30,7 +37,7 @@ const parts: [string, [string, string][]][] = [
     ['square at a corner', 'scale'],
     ['diamond at a side', 'stretch and shear'],
     ['round knob with an arrow', 'turn about the foot, where the cross is; with Shift by steps of 15°; with Alt about the middle'],
-    ['arrow keys', 'move; with Shift turn and scale'],
+    ['arrow keys on a box, or on a name after Enter', 'move the map; with Shift turn and scale it'],
   ]],
   ['Everywhere', [
     ['Ctrl+Z, Ctrl+Shift+Z', 'undo and redo: text, knobs and camera'],
@@ -40,10 +47,13 @@ const parts: [string, [string, string][]][] = [
 ];
 
 export function fill_help(dialog: HTMLDialogElement): void {
+  // A hand without a mouse finds its own first.
+  const is_first = ([title]: [string, unknown]) => title === 'Touch' && matchMedia('(pointer: coarse)').matches;
+  const sorted = [...parts].sort((a, b) => Number(is_first(b)) - Number(is_first(a)));
   dialog.append(
     element('button', { type: 'button', class: 'quiet', onclick: () => dialog.close() }, 'Close'),
     element('h2', { id: 'help-title' }, 'Hands and keys'),
-    element('div', {}, ...parts.map(([title, rows]) => element('section', {}, element('h3', {}, title),
+    element('div', {}, ...sorted.map(([title, rows]) => element('section', {}, element('h3', {}, title),
       element('dl', {}, ...rows.flatMap(([keys, does]) => [element('dt', {}, keys), element('dd', {}, does)]))))),
     element('p', { class: 'note' }, 'The editor is CodeMirror: ', element('a', { href: 'licences.html', target: '_blank' }, 'licences'), '.'),
   );

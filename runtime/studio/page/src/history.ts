@@ -10,14 +10,16 @@ interface Kept {
 
 /**
  * Entries are never changed, and share what did not change. A change with the key of the one before, soon after it or by the
- * same press of the pointer, takes its place: a drag or a typed word is one step.
+ * same press of the pointer, takes its place: a drag or a typed word is one step. A key that ends in # and a number is of one
+ * drag, however late the session answers.
  */
 export class History {
   private entries: Choices[];
   private at = 0;
   private key: string | null = null;
   private changed_ms = 0;
-  private held = false;
+  /** The pointer is down. */
+  held = false;
 
   constructor(first: Choices, private readonly storage_key: string, private readonly changed: (why: string) => void) {
     this.entries = [first];
@@ -39,7 +41,7 @@ export class History {
   change(part: Partial<Choices>, key: string | null = null, why = ''): void {
     const next = { ...this.now, ...part };
     const now_ms = performance.now();
-    const soon = this.held || now_ms - this.changed_ms < merge_ms;
+    const soon = this.held || /#\d+$/.test(key ?? '') || now_ms - this.changed_ms < merge_ms;
     const merges = key !== null && key === this.key && soon && !this.can_redo && this.at > 0;
     this.entries.length = this.at + 1;
     if (merges) this.entries[this.at] = next;
@@ -100,13 +102,14 @@ export class History {
     return again;
   }
 
-  /** Keeps it over a reload. Texts that are equal are kept once. */
+  /** Keeps it over a reload. Texts and files that are equal are kept once. */
   save(): void {
     const texts = [...new Set(this.entries.map(({ text }) => text))];
+    const files = [...new Set(this.entries.map((entry) => entry.files))];
     const index = new Map(texts.map((text, i) => [text, i]));
-    const entries = this.entries.map((entry) => ({ ...entry, text: index.get(entry.text) }));
+    const entries = this.entries.map((entry) => ({ ...entry, text: index.get(entry.text), files: files.indexOf(entry.files) }));
     try {
-      sessionStorage.setItem(this.storage_key, JSON.stringify({ texts, entries, at: this.at }));
+      sessionStorage.setItem(this.storage_key, JSON.stringify({ texts, files, entries, at: this.at }));
     } catch {
       // Storage that is full or forbidden: the page works, and forgets.
     }
@@ -115,7 +118,8 @@ export class History {
   private load(): Kept | null {
     try {
       const kept = JSON.parse(sessionStorage.getItem(this.storage_key) ?? 'null');
-      const entries = kept.entries.map((entry: Choices & { text: number }) => ({ ...entry, keys: entry.keys ?? [], text: kept.texts[entry.text] }));
+      const entries = kept.entries.map((entry: Omit<Choices, 'text' | 'files'> & { text: number; files: number }) => (
+        { ...entry, keys: entry.keys ?? [], text: kept.texts[entry.text], files: kept.files?.[entry.files] ?? null }));
       return entries.length > 0 && entries[kept.at] ? { entries, at: kept.at } : null;
     } catch {
       return null;

@@ -1,18 +1,21 @@
 // The page: it joins the text, the picture and the tools by one history and one session.
+import { tidied } from './camera';
 import { Digraph } from './digraph';
 import { by_id, element, soon } from './dom';
 import { Divider } from './divider';
 import { Editor } from './editor';
+import { nearly_whole } from './film';
 import { fill_help } from './help';
 import { History } from './history';
 import { Knobs } from './knobs';
-import { choices_of } from './link';
+import { opened } from './link';
 import { Maps } from './maps';
 import { Out } from './out';
 import { Picture } from './picture';
 import { Place } from './place';
 import { PointTool } from './point';
 import { Presets } from './presets';
+import { Saved } from './saved';
 import { first_id, Session, type Listener, type Size } from './session';
 import { Status } from './status';
 import { edited, type Offer, type Studio } from './studio';
@@ -20,13 +23,16 @@ import { Tabs } from './tabs';
 import { Time } from './time';
 import { home_transport } from './transport';
 import { Vary } from './vary';
+import { is_in_view } from './vectors';
 import { ViewControl } from './view';
 import type { Camera, Choices, Edit, Findings, Hello, Model, Pass, Progress, SentFile, Tile } from './protocol';
 
 const most_px = 2_100_000;
+/** Keys of changes that keep a view that is held. */
+const hands_in_picture = /^(map|pull) /;
 
 const nothing: Choices = {
-  name: '', text: '', set: {}, steps: null, time: null, seed: null, camera: null, at: null, zoom: null, engine: null, quality: null, keys: [],
+  name: '', text: '', set: {}, steps: null, time: null, seed: null, camera: null, at: null, zoom: null, engine: null, quality: null, keys: [], files: null,
 };
 
 class Page implements Studio, Listener {
@@ -47,6 +53,7 @@ class Page implements Studio, Listener {
   private readonly vary: Vary;
   private readonly time: Time;
   private readonly out: Out;
+  private readonly saved = new Saved(by_id('edited'));
   private readonly place: Place;
   private readonly tabs: Tabs;
   private complete = 0;
@@ -55,7 +62,9 @@ class Page implements Studio, Listener {
   private film_view: Camera | null = null;
   /** The last state left it to the session to choose that. */
   private frames_film = false;
-  /** The camera, address and zoom of before. */
+  /** The view that is held (`hold_view`); null: the model chooses. */
+  private still: Camera | null = null;
+  /** The model, camera, address and zoom of before. */
   private seen: unknown[] = [];
   /** From states to the first pixels of their pictures: the last ones. */
   readonly latencies_ms: number[] = [];
@@ -80,7 +89,10 @@ class Page implements Studio, Listener {
     this.presets = new Presets(this);
     this.vary = new Vary(by_id('grid'), this);
     this.time = new Time(this, () => this.show());
-    this.out = new Out(this, this.knobs, (choices) => this.change({ ...nothing, ...choices }));
+    this.out = new Out(this, this.knobs, (choices) => this.change({ ...nothing, ...choices }), (choices) => {
+      this.saved.wrote(choices);
+      this.show_name();
+    });
     this.place = new Place(by_id<HTMLFormElement>('place'), this);
     this.tabs = new Tabs(by_id('tabs'), by_id('panels'), [
       { id: 'text', label: 'Text', content: by_id('text') },
@@ -100,15 +112,29 @@ class Page implements Studio, Listener {
   }
 
   get camera(): Camera | null {
-    return this.history.now.camera ?? this.model?.camera ?? null;
+    return this.history.now.camera ?? this.still ?? this.model?.camera ?? null;
+  }
+
+  hold_view(): void {
+    const { camera, at, zoom } = this.history.now;
+    if (this.camera && camera === null && at === null && zoom === null) this.still ??= tidied(this.camera);
+  }
+
+  /** The model chooses the view again, if it has left the one that is held. */
+  private fit(): void {
+    const { still, model, size } = this;
+    if (!still || this.history.held || !model?.box || is_in_view(still, size.width_px, size.height_px, model.box)) return;
+    this.still = null;
+    this.show();
   }
 
   change(part: Partial<Choices>, key: string | null = null): void {
+    if (!key || !hands_in_picture.test(key)) this.still = null;
     this.history.change(part, key);
   }
 
   edit(edits: Edit[], key: string | null = null): void {
-    if (edits.length) this.history.change({ text: edited(this.history.now.text, edits) }, key);
+    if (edits.length) this.change({ text: edited(this.history.now.text, edits) }, key);
   }
 
   select(from: number, to: number): void {
@@ -133,7 +159,10 @@ class Page implements Studio, Listener {
     by_id<HTMLSelectElement>('quality').onchange = (event) => this.change({ quality: (event.target as HTMLSelectElement).value });
     by_id<HTMLSelectElement>('engine').onchange = (event) => this.change({ engine: (event.target as HTMLSelectElement).value });
     document.addEventListener('pointerdown', () => history.hold(), true);
-    for (const name of ['pointerup', 'pointercancel']) document.addEventListener(name, () => history.release(), true);
+    for (const name of ['pointerup', 'pointercancel']) document.addEventListener(name, () => {
+      history.release();
+      this.fit();
+    }, true);
     // Before the editor, which has no history of its own.
     document.addEventListener('keydown', (event) => this.key(event), true);
     new ResizeObserver(() => this.resized()).observe(by_id('view'));
@@ -182,6 +211,7 @@ class Page implements Studio, Listener {
     const { width, height } = by_id('view').getBoundingClientRect();
     if (width < 1 || height < 1) return;
     const scale = Math.min(Math.min(2, devicePixelRatio), Math.sqrt(most_px / (width * height)));
+    this.still = null;
     this.size = { width_px: Math.max(2, Math.round(width * scale)), height_px: Math.max(2, Math.round(height * scale)) };
     if (this.history.now.text) this.show();
     this.maps.draw();
@@ -193,8 +223,9 @@ class Page implements Studio, Listener {
     if (!film) this.film_view = null;
     // Beside the tab Time the view of the film stays as it is: a knob need not frame all moments anew, and what Save writes has it.
     const is_held = this.film_view !== null && this.tabs.selected !== 'time' && now.at === null && now.zoom === null;
-    this.frames_film = film !== null && !is_held && now.camera === null && now.at === null && now.zoom === null;
-    this.session.show({ ...now, ...(is_held ? { camera: now.camera ?? this.film_view, film: null } : { film }) }, this.size);
+    this.frames_film = film !== null && !is_held && this.still === null && now.camera === null && now.at === null && now.zoom === null;
+    const camera = now.camera ?? (is_held ? this.film_view : null) ?? this.still;
+    this.session.show({ ...now, camera, film: is_held ? null : film }, this.size);
     this.tell_done();
   }
 
@@ -214,14 +245,15 @@ class Page implements Studio, Listener {
     const { now, can_undo, can_redo } = this.history;
     by_id<HTMLButtonElement>('undo').disabled = !can_undo;
     by_id<HTMLButtonElement>('redo').disabled = !can_redo;
-    by_id('model-name').textContent = now.name.replace(/^.*[\\/]/, '');
-    by_id('model-name').title = now.name;
     by_id<HTMLSelectElement>('quality').value = now.quality ?? 'normal';
     by_id<HTMLSelectElement>('engine').value = now.engine ?? this.hello?.engines[0] ?? 'native';
-    document.title = `${now.name} – graftal studio`;
+    this.show_name();
     if (why === 'history') this.view.forget_ahead();
-    const seen = [now.camera, now.at, now.zoom];
-    if (seen.some((part, i) => part !== this.seen[i])) this.picture.forget_sharp();
+    const seen = [now.name, now.camera, now.at, now.zoom];
+    if (seen.some((part, i) => part !== this.seen[i])) {
+      this.picture.forget_sharp();
+      this.still = null;
+    }
     this.seen = seen;
     this.editor.show(now.text);
     this.show();
@@ -235,14 +267,24 @@ class Page implements Studio, Listener {
     this.save();
   }
 
+  private show_name(): void {
+    const { now } = this.history, is_saved = this.saved.show(now);
+    by_id('model-name').textContent = now.name.replace(/^.*[\\/]/, '');
+    by_id('model-name').title = now.name;
+    document.title = `${is_saved ? '' : '• '}${now.name} – graftal studio`;
+  }
+
   private async open_link(): Promise<boolean> {
-    const choices = await choices_of(location.hash);
-    if (location.hash.startsWith('#m=')) {
-      window.history.replaceState(null, '', location.pathname + location.search);
-      if (!choices) this.say('The link holds no model that this page can read.');
+    const link = location.hash;
+    if (!link.startsWith('#m=')) return false;
+    window.history.replaceState(null, '', location.pathname + location.search);
+    try {
+      this.change({ ...nothing, ...(await opened(link, this.session)) });
+      return true;
+    } catch (error) {
+      this.say((error as Error).message);
+      return false;
     }
-    if (choices) this.history.change({ ...nothing, ...choices });
-    return choices !== null;
   }
 
   // What the session says.
@@ -250,6 +292,7 @@ class Page implements Studio, Listener {
   sent(number: number, size: Size): void {
     this.picture.expect(number, size);
     this.complete = 0;
+    this.status.sent();
     this.sent_ms.set(number, performance.now());
     this.tell_done();
   }
@@ -262,6 +305,7 @@ class Page implements Studio, Listener {
     this.out.hello();
     this.time.film.hello();
     if (!first) return this.show();
+    this.saved.opened(message);
     const again = this.history.open({ ...nothing, name: message.name, text: message.text });
     if (!(await this.open_link()) && again) await this.picture.show_kept();
     this.presets.show();
@@ -284,13 +328,13 @@ class Page implements Studio, Listener {
     this.maps.model_came();
     this.digraph.show();
     this.point.draw();
+    this.fit();
   }
 
-  progress(message: Progress): void {
-    if (message.number >= first_id) {
-      if (this.time.film.is_film(message.number)) this.time.film.progress(message.share ?? 0);
-      else this.say(`Working on the file: ${Math.round(100 * (message.share ?? 0))} %`);
-    } else if (message.number === this.session.number) this.status.progress(message);
+  progress({ number, share }: Progress): void {
+    const made = share ?? 0;
+    if (this.time.film.is_film(number)) this.time.film.progress(made);
+    else this.say(made >= nearly_whole ? 'Writing the file …' : `Working on the file: ${Math.round(100 * made)} %`);
   }
 
   pass(message: Pass): void {

@@ -4,11 +4,16 @@ import { element, draggable, svg, type Drag } from './dom';
 import { covers_of, reachable, type Place } from './reach';
 import { latest, type Studio } from './studio';
 import type { Box, Camera, Edit, Matrix, ModelMap, Vec3 } from './protocol';
-import { about, add, column, compose, corner, dot, dragged, edge_towards, flat_axis, hull_of, length, map_point, matrix_of, middle, projected, subtract, times, turned, unit, units_of_pixel, view_of } from './vectors';
+import { about, add, column, compose, corner, dot, dragged, edge_towards, far_from, flat_axis, hull_of, length, map_point, matrix_of, middle, projected, subtract, times, turned, unit, units_of_pixel, view_of } from './vectors';
 
 /** A model may have thousands of maps: the page stays quick, and shows the first. */
 const most_shown = 64;
 const handle_px = 7, knob_px = 11, stem_px = 30, double_click_ms = 400;
+/** The knob is so far at least from what it turns a map about: a hand tells a degree. */
+const lever_px = 80;
+/** Ways to look for room in, where the sides of a box have none. */
+const ways_about = 16;
+const whole_view = 'The boxes show in the whole view: press 0 on the picture.';
 const hues = [212, 28, 145, 275, 350, 60, 185, 320];
 
 interface Wish {
@@ -16,6 +21,8 @@ interface Wish {
   matrix: Matrix;
   /** What a pixel of the screen shows there. */
   grain: number;
+  /** The step of the history. */
+  key: string;
 }
 
 export class Maps {
@@ -25,8 +32,11 @@ export class Maps {
   private readonly refused = new Map<string, string>();
   private chosen: string | null = null;
   private dragging = false;
-  /** The way in which the knob's stem goes; -1: there is room for none. */
-  private side: number | null = null;
+  private drags = 0;
+  /** The way in which the knob's stem goes, of those that `stem` tries. */
+  private side = -1;
+  /** The knob's place under the hand. */
+  private knob: Place | null = null;
   private clicked: { name: string; ms: number } | null = null;
   private readonly ask: (wish: Wish) => void;
 
@@ -92,19 +102,20 @@ export class Maps {
       return element('li', { class: why ? 'bad' : '' },
         element('span', { class: 'dot', style: `--hue:${hues[i % hues.length]}` }),
         element('button', {
-          type: 'button', class: 'link', 'data-listed': map.name,
+          type: 'button', class: 'link', 'data-listed': map.name, 'aria-current': this.chosen === map.name ? 'true' : null,
           onclick: () => {
-            this.chosen = map.name;
+            this.choose(map);
             this.studio.select(map.from, map.to);
             this.draw();
           },
+          onkeydown: (event: KeyboardEvent) => this.chosen === map.name && this.key(event, map),
         }, map.name),
         element('span', { class: 'note' }, why || `shrinks to ${plain_share(map.contraction)}`));
     }));
     if (more > 0) this.list.append(element('li', { class: 'note' }, `and ${more} more`));
     if (!maps.length) this.list.append(element('li', { class: 'note' }, 'This model has no maps. Models of the language .rifs have them.'));
-    else if (!zoomed) this.list.append(element('li', { class: 'note' }, 'Drag a box to move it, a square to scale it, a diamond to stretch it, the round knob to turn it about the cross.'));
-    if (maps.length && zoomed) this.list.append(element('li', { class: 'note' }, 'The boxes show in the whole view: press 0 on the picture.'));
+    else if (!zoomed) this.list.append(element('li', { class: 'note' }, 'Drag a box to move it, a square to scale it, a diamond to stretch it, the round knob to turn it about the cross. Arrow keys move the chosen map; with Shift they turn and scale it.'));
+    if (maps.length && zoomed) this.list.append(element('li', { class: 'note' }, whole_view));
     if (focus) this.list.querySelector<HTMLElement>(`[data-listed="${CSS.escape(focus)}"]`)?.focus();
   }
 
@@ -137,7 +148,7 @@ export class Maps {
     if (centre) group.append(svg('text', { x: centre[0], y: centre[1], 'font-size': 13 * scale }, map.name));
     group.addEventListener('focus', () => {
       if (this.chosen === map.name) return;
-      this.chosen = map.name;
+      this.choose(map);
       this.draw();
     });
     group.addEventListener('keydown', (event) => this.key(event as KeyboardEvent, map));
@@ -174,7 +185,7 @@ export class Maps {
     if (!hull.length || !centre) return group;
     const pivot = at(foot_of(box));
     if (pivot) group.append(svg('path', { class: 'pivot', d: cross_at(pivot, 6 * scale) }));
-    const [foot, knob] = this.stem(map, camera, centre, hull, (place) => reach(place, knob_px));
+    const [foot, knob] = this.stem(map, camera, centre, pivot ?? centre, hull, (place) => reach(place, knob_px));
     const [x, y] = knob, r = 4.5 * scale;
     group.append(
       svg('path', { class: 'stem', d: `M${foot.join(' ')}L${knob.join(' ')}` }),
@@ -185,24 +196,33 @@ export class Maps {
     return group;
   }
 
-  /** Where the stem of the knob begins, on the outline of the box, and where it ends: above the top of the map, or else where there is room. */
-  private stem(map: ModelMap, camera: Camera, centre: Place, hull: Place[], reach: (place: Place) => Place): [Place, Place] {
-    const { width_px, height_px } = this.studio.size, matrix = this.matrix_of(map), stem = stem_px * this.px_scale();
+  /** Where the stem of the knob begins, and where it ends: above the top of the map, or else where there is room. */
+  private stem(map: ModelMap, camera: Camera, centre: Place, pivot: Place, hull: Place[], reach: (place: Place) => Place): [Place, Place] {
+    const { width_px, height_px } = this.studio.size, matrix = this.matrix_of(map), stem = stem_px * this.px_scale(), lever = lever_px * this.px_scale();
     const top = middle(map.box);
     top[1] = map.box.most[1];
     const seen = projected(camera, width_px, height_px, map_point(matrix, top)) ?? [centre[0], centre[1] - 1];
     const [x, y] = [seen[0] - centre[0], seen[1] - centre[1]], far = Math.hypot(x, y);
     const up: Place = far > 1e-6 ? [x / far, y / far] : [0, -1];
     const ways: Place[] = [up, [-up[0], -up[1]], [-up[1], up[0]], [up[1], -up[0]]];
+    const along = ([ax, ay]: Place, way: Place, by: number): Place => [ax + by * way[0], ay + by * way[1]];
+    // Stems on the outline of the box.
     const stems = ways.map((way): [Place, Place] => {
       const foot = edge_towards(hull, centre, way);
-      return [foot, [foot[0] + stem * way[0], foot[1] + stem * way[1]]];
+      return [foot, along(foot, way, Math.max(stem, far_from(foot, way, centre, lever), far_from(foot, way, pivot, lever)))];
     });
-    const found = stems.findIndex(([, end]) => reach(end).every((value, i) => value === end[i]));
-    // Under the hand the knob stays on its side.
-    if (this.side === null || !this.dragging) this.side = found;
+    // A box that fills the picture has its knob inside.
     const near = reach(centre);
-    return stems[this.side] ?? [near, reach([near[0], near[1] - stem])];
+    for (let i = 0; i < ways_about; ++i) {
+      const angle = Math.atan2(up[1], up[0]) + (2 * Math.PI * i) / ways_about;
+      stems.push([near, along(pivot, [Math.cos(angle), Math.sin(angle)], lever)]);
+    }
+    const has_room = ([, end]: [Place, Place]) => reach(end).every((value, i) => value === end[i]);
+    // The knob stays on its side, under the hand at any rate.
+    const side = stems[this.side];
+    if (!side || !(this.dragging || has_room(side))) this.side = stems.findIndex(has_room);
+    const [foot, end] = stems[this.side] ?? [near, along(near, [0, -1], lever)];
+    return [foot, this.knob ?? reach(end)];
   }
 
   /** Pixels of the picture in one of the screen. */
@@ -216,15 +236,16 @@ export class Maps {
     const { camera, size } = this.studio;
     if (!camera || !handle || event.button !== 0) return null;
     if (this.chosen !== map.name) {
-      this.chosen = map.name;
+      this.choose(map);
       this.draw();
     }
     if (!map.movable) {
-      this.studio.say(map.why ?? 'The text of this map cannot be rewritten.');
+      this.say_fixed(map);
       this.draw();
       return null;
     }
     this.dragging = true;
+    ++this.drags;
     const { width_px, height_px } = size, scale = this.px_scale(), start = this.matrix_of(map);
     const normal = flat === null ? view_of(camera).into : unit([Number(flat === 0), Number(flat === 1), Number(flat === 2)]);
     const [kind, first, second] = handle.split(' ');
@@ -232,7 +253,8 @@ export class Maps {
     const foot = map_point(start, foot_of(map.box));
     const bounds = this.overlay.getBoundingClientRect();
     const place = (one: PointerEvent): [number, number] => [(one.clientX - bounds.left) * scale, (one.clientY - bounds.top) * scale];
-    const down = place(event);
+    const down = place(event), knob = event.target as Element;
+    const held = ['cx', 'cy'].map((name, i) => Number(knob.getAttribute(name)) - down[i]!);
     return {
       move: (now) => {
         const to = place(now), dx = to[0] - down[0], dy = to[1] - down[1];
@@ -248,6 +270,7 @@ export class Maps {
           let turn_rad = angle(to) - angle(down);
           if (now.shiftKey) turn_rad = (Math.round((turn_rad * 180) / Math.PI / 15) * 15 * Math.PI) / 180;
           by = about(pivot, (d) => turned(d, normal, turn_rad * seen_from_front));
+          this.knob = [to[0] + held[0]!, to[1] + held[1]!];
         } else if (kind === 'corner') {
           // The corner across stays; in space that is the middle, for the one across may lie behind.
           const bit = Number(first), held = map_point(start, corner(map.box, bit));
@@ -273,6 +296,7 @@ export class Maps {
       },
       end: (up) => {
         this.dragging = false;
+        this.knob = null;
         if (up.clientX === event.clientX && up.clientY === event.clientY) this.click(up, map);
         this.let_go();
         this.draw();
@@ -294,14 +318,25 @@ export class Maps {
     this.refused.clear();
   }
 
+  private choose(map: ModelMap): void {
+    this.chosen = map.name;
+    this.side = -1;
+  }
+
+  private say_fixed(map: ModelMap): void {
+    this.studio.say(map.why ?? 'The text of this map cannot be rewritten.');
+  }
+
   private key(event: KeyboardEvent, map: ModelMap): void {
-    const { camera, size } = this.studio;
-    if (!camera || !map.movable || event.ctrlKey || event.metaKey || event.altKey) return;
+    const { camera, size, history: { now } } = this.studio;
+    if (!camera || event.ctrlKey || event.metaKey || event.altKey) return;
     const arrows: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
     const arrow = arrows[event.key];
     if (!arrow) return;
     event.preventDefault();
     event.stopPropagation();
+    if (!map.movable) return this.say_fixed(map);
+    if (now.at !== null || now.zoom !== null) return this.studio.say(whole_view);
     const start = this.matrix_of(map), centre = map_point(start, middle(map.box)), flat = flat_axis(this.studio.model!.box);
     const normal = flat === null ? times(view_of(camera).into, -1) : unit([Number(flat === 0), Number(flat === 1), Number(flat === 2)]);
     let by: Matrix;
@@ -318,14 +353,15 @@ export class Maps {
   }
 
   private wish(map: ModelMap, matrix: Matrix): void {
+    this.studio.hold_view();
     this.ahead.set(map.name, matrix);
     this.draw();
     const { camera } = this.studio;
     const grain = camera ? units_of_pixel(camera, this.overlay.getBoundingClientRect().width, map_point(matrix, middle(map.box))) : 0;
-    this.ask({ map, matrix, grain });
+    this.ask({ map, matrix, grain, key: `map ${map.name}${this.dragging ? ` #${this.drags}` : ''}` });
   }
 
-  private async ask_now({ map, matrix, grain }: Wish): Promise<void> {
+  private async ask_now({ map, matrix, grain, key }: Wish): Promise<void> {
     const { session, history } = this.studio, before = history.now.text;
     try {
       const answer = await session.ask('map', { name: map.name, matrix, grain });
@@ -333,7 +369,7 @@ export class Maps {
       if (answer['contracts'] === false) this.refused.set(map.name, String(answer['why'] ?? 'It would not shrink.'));
       else this.refused.delete(map.name);
       const edits = answer['edits'] as Edit[] | undefined;
-      if (edits?.length && !this.refused.has(map.name)) this.studio.edit(edits, `map ${map.name}`);
+      if (edits?.length && !this.refused.has(map.name)) this.studio.edit(edits, key);
     } catch (error) {
       this.refused.set(map.name, (error as Error).message);
     }

@@ -1,6 +1,6 @@
 // Ways out: a picture of any size, files for other programs, the command line, a link.
 import { by_id, element } from './dom';
-import { choices_of, fragment_of } from './link';
+import { link_of, opened } from './link';
 import { inflate, type Choices, type SentFile } from './protocol';
 import type { Knobs, Unwritten } from './knobs';
 import type { Offer, Studio } from './studio';
@@ -22,15 +22,19 @@ export class Out {
   constructor(
     private readonly studio: Studio, private readonly knobs: Pick<Knobs, 'unwritten' | 'write'>,
     private readonly open: (choices: Partial<Choices>) => void,
+    /** A file has this text now. */
+    private readonly saved: (choices: Choices) => void,
   ) {
     const pasted = element('input', { type: 'text', id: 'pasted', 'aria-label': 'Link to open', placeholder: 'paste a link here' });
     const link_form = element('form', { class: 'line' }, pasted, element('button', { class: 'quiet' }, 'Open'));
     link_form.onsubmit = async (event) => {
       event.preventDefault();
-      const choices = await choices_of(pasted.value);
-      if (choices) this.open(choices);
-      else studio.say('This link holds no model.');
-      pasted.value = '';
+      try {
+        this.open(await opened(pasted.value, studio.session));
+        pasted.value = '';
+      } catch (error) {
+        studio.say((error as Error).message);
+      }
     };
     const size = (times: number) => element('button', {
       type: 'button', class: 'small', onclick: () => this.size(times),
@@ -94,10 +98,12 @@ export class Out {
 
   /** Writes the text where the model came from; a page without a folder gives it to the browser. */
   async save_text(): Promise<void> {
-    const { name } = this.studio.history.now;
+    const { now } = this.studio.history;
     if (this.studio.hello?.home !== 'program') return this.download_text();
-    const path = await this.write({ path: name });
-    if (path) this.say_saved(path);
+    const path = await this.write({ path: now.name });
+    if (!path) return;
+    this.saved(now);
+    this.say_saved(path);
   }
 
   /** Says that the text is saved, and what of the picture is not in it. */
@@ -120,13 +126,16 @@ export class Out {
   /** Opens a file of the person's: its text takes the place of the model. */
   async open_file(file: File): Promise<void> {
     if (file.size > 4_000_000) this.studio.say(`${file.name} is too large for a model: it has more than 4 MB.`);
-    else this.open({ name: file.name, text: (await file.text()).replace(/\r\n?/g, '\n') });
+    else {
+      this.open({ name: file.name, text: (await file.text()).replace(/\r\n?/g, '\n') });
+      this.saved(this.studio.history.now);
+    }
   }
 
   private download_text(): void {
-    const { name, text } = this.studio.history.now;
-    const file = name.replace(/^.*[\\/]/, '');
-    this.give(file, new TextEncoder().encode(text));
+    const { now } = this.studio.history, file = now.name.replace(/^.*[\\/]/, '');
+    this.give(file, new TextEncoder().encode(now.text));
+    if (this.studio.hello?.home !== 'program') this.saved(now);
     this.say_saved(file);
   }
 
@@ -134,7 +143,10 @@ export class Out {
   async copy_link(): Promise<void> {
     const elsewhere = document.querySelector<HTMLMetaElement>('meta[name="graftal-site"]')?.content;
     const base = elsewhere ?? location.origin + location.pathname;
-    await this.copy(base + (await fragment_of(this.studio.history.now)), 'The link', !elsewhere && this.studio.hello?.home === 'program' ? ' It opens on this computer while graftal runs; elsewhere, paste it into the studio there.' : '');
+    const { fragment, lacks } = await link_of(this.studio.history.now, this.studio.session);
+    const where = !elsewhere && this.studio.hello?.home === 'program' ? ' It opens on this computer while graftal runs; elsewhere, paste it into the studio there.' : '';
+    const needs = lacks.length ? ` It cannot hold ${lacks.join(', ')}: elsewhere, that has to lie beside the model.` : '';
+    await this.copy(base + fragment, 'The link', where + needs);
   }
 
   async file(file: SentFile): Promise<void> {

@@ -91,8 +91,9 @@ export class Picture {
     );
   }
 
-  pass(number: number, samples: number): void {
-    if (number === this.shown) this.samples = samples;
+  /** Pictures of engines that tell no samples are sharp. */
+  pass(number: number, samples: number | null): void {
+    if (number === this.shown) this.samples = samples ?? sharp_samples;
   }
 
   /** The view is another: no picture of before is of it. */

@@ -1,8 +1,11 @@
 // A click on the picture: the rule that made what is there, its address, and a point that can be pulled.
 import { draggable, element, svg } from './dom';
+import { covers, covers_of } from './reach';
 import { edited, latest, type Studio } from './studio';
 import type { Choices, Edit, Vec3 } from './protocol';
 import { dragged, projected, units_of_pixel } from './vectors';
+
+const dot_px = 7;
 
 interface Picked {
   point: Vec3;
@@ -27,6 +30,7 @@ export class PointTool {
   /** What stood there before the drag. */
   private was = '';
   private held = false;
+  private drags = 0;
   private readonly ask: (to: Vec3) => void;
 
   /** `card` says what was picked. */
@@ -46,7 +50,6 @@ export class PointTool {
         const { point, address, object, from, to, path, part } = answer as unknown as Picked & { from?: number; to?: number };
         this.picked = { point, address, object, path: path ?? [], part: part ?? [] };
         this.of = of;
-        // The card lies where the dot does not, and stays there.
         this.card.classList.toggle('high', y > studio.size.height_px / 2);
         if (typeof from === 'number' && typeof to === 'number') studio.select(from, to);
       }
@@ -94,9 +97,12 @@ export class PointTool {
     const marker = old ?? this.marker();
     marker.setAttribute('cx', String(place[0]));
     marker.setAttribute('cy', String(place[1]));
-    marker.setAttribute('r', String(7 * scale));
+    marker.setAttribute('r', String(dot_px * scale));
     marker.setAttribute('class', this.can_pull ? 'point pulls' : 'point');
     if (!old) this.overlay.replaceChildren(marker);
+    // The card makes room for the dot.
+    const [card] = covers_of(this.overlay, ['picked'], scale);
+    if (card && covers(place, card, dot_px * scale)) this.card.classList.toggle('high', place[1] > size.height_px / 2);
   }
 
   private marker(): SVGCircleElement {
@@ -107,9 +113,11 @@ export class PointTool {
       this.lies = picked.point;
       this.number = null;
       this.held = true;
+      ++this.drags;
       const scale = size.width_px / this.overlay.getBoundingClientRect().width;
       return {
         move: (_, dx, dy) => {
+          studio.hold_view();
           picked.point = dragged(camera, size.width_px, picked.point, dx * scale, dy * scale);
           this.draw();
           this.ask(picked.point);
@@ -158,7 +166,7 @@ export class PointTool {
       }
       const edits = answer['edits'] as Edit[];
       this.of = { ...this.of!, text: edited(before, edits) };
-      studio.edit(edits, 'pull');
+      studio.edit(edits, `pull #${this.drags}`);
       this.lies = (answer['point'] as Vec3 | undefined) ?? to;
       if (!this.is_lsys) return;
       const { from, to: end, text } = edits[0]!;

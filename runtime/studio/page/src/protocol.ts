@@ -34,6 +34,8 @@ export interface Choices {
   quality: string | null;
   /** In the order of time. No picture depends on them. */
   keys: KeyFrame[];
+  /** Texts of files that came with a link, by their paths. */
+  files: Record<string, string> | null;
 }
 
 export interface Edit {
@@ -127,7 +129,8 @@ export interface Pass {
   type: 'pass';
   number: number;
   pass: number;
-  samples: number;
+  /** Null: another engine draws, and does not say. */
+  samples: number | null;
   seconds_left: number | null;
   noise_255: number | null;
   done: boolean;

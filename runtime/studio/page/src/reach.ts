@@ -9,20 +9,25 @@ export interface Area {
   bottom: number;
 }
 
-const inside = ([x, y]: Place, { left, top, right, bottom }: Area) => x > left && x < right && y > top && y < bottom;
+/** Whether a cover lies over a handle that reaches `radius` about a place. */
+export function covers([x, y]: Place, { left, top, right, bottom }: Area, radius: number): boolean {
+  return x > left - radius && x < right + radius && y > top - radius && y < bottom + radius;
+}
 
 /** The nearest place, about, that lies in the stage and in none of the covers; a handle reaches `radius` about it. */
-export function reachable([x, y]: Place, stage: Area, covers: Area[], radius: number): Place {
+export function reachable([x, y]: Place, stage: Area, over: Area[], radius: number): Place {
   const into = ([px, py]: Place): Place => [
     Math.max(stage.left + radius, Math.min(stage.right - radius, px)), Math.max(stage.top + radius, Math.min(stage.bottom - radius, py)),
   ];
-  const wide = covers.map(({ left, top, right, bottom }) => ({ left: left - radius, top: top - radius, right: right + radius, bottom: bottom + radius }));
+  const is_free = (one: Place) => !over.some((cover) => covers(one, cover, radius));
   const place = into([x, y]);
-  if (!wide.some((cover) => inside(place, cover))) return place;
+  if (is_free(place)) return place;
   const [px, py] = place;
-  const beside = wide.flatMap(({ left, top, right, bottom }): Place[] => [[left, py], [right, py], [px, top], [px, bottom]]).map(into);
+  const beside = over.flatMap(({ left, top, right, bottom }): Place[] => [
+    [left - radius, py], [right + radius, py], [px, top - radius], [px, bottom + radius],
+  ]).map(into);
   const far = ([a, b]: Place) => Math.hypot(a - px, b - py);
-  return beside.filter((one) => !wide.some((cover) => inside(one, cover))).sort((a, b) => far(a) - far(b))[0] ?? place;
+  return beside.filter(is_free).sort((a, b) => far(a) - far(b))[0] ?? place;
 }
 
 /** What lies over the picture, in pixels of the picture. */

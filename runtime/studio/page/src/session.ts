@@ -142,7 +142,7 @@ export class Session {
         return this.listener.progress(message);
       case 'pass': {
         const left_ms = this.sent_ms + patience_ms - performance.now();
-        if (message.done || message.samples >= good_samples || left_ms <= 0) this.begun(message.number, true);
+        if (message.done || (message.samples ?? 0) >= good_samples || left_ms <= 0) this.begun(message.number, true);
         else setTimeout(() => this.begun(message.number, true), left_ms);
         return this.listener.pass(message);
       }

@@ -13,6 +13,9 @@ export interface Studio {
   readonly size: Size;
   /** The camera as it is: the person's, or else the model's. */
   readonly camera: Camera | null;
+  /** A hand in the picture changes the model: where the model chooses the view, it chooses no other while the pointer is down,
+   * and none after that as long as the model is in view and nothing else changes. */
+  hold_view(): void;
   change(part: Partial<Choices>, key?: string | null): void;
   /** Puts edits into the text. */
   edit(edits: Edit[], key?: string | null): void;

@@ -105,6 +105,21 @@ export function dragged(camera: Camera, width_px: number, point: Vec3, dx_px: nu
   return subtract(moved, times(ray, dot(subtract(moved, point), normal) / slope));
 }
 
+/** Whether the corners of a box lie in the picture, but for a hundredth of it. */
+export function is_in_view(camera: Camera, width_px: number, height_px: number, box: Box): boolean {
+  const slack = 0.01;
+  return [0, 1, 2, 3, 4, 5, 6, 7].every((bit) => {
+    const place = projected(camera, width_px, height_px, corner(box, bit));
+    return place !== null && [width_px, height_px].every((most, i) => place[i]! >= -slack * most && place[i]! <= (1 + slack) * most);
+  });
+}
+
+/** How far along a way from a point one goes at least, to stay so far from another, or farther. */
+export function far_from([x, y]: [number, number], [dx, dy]: [number, number], [cx, cy]: [number, number], far: number): number {
+  const along = (x - cx) * dx + (y - cy) * dy, rest = along * along - (x - cx) ** 2 - (y - cy) ** 2 + far * far;
+  return rest > 0 ? Math.max(0, Math.sqrt(rest) - along) : 0;
+}
+
 /** The convex hull of points, in order. */
 export function hull_of(points: [number, number][]): [number, number][] {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);

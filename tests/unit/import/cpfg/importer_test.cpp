@@ -300,6 +300,9 @@ TEST(Cpfg, NamesWhatHasNoTranslation) {
     EXPECT_THAT(said("Axiom: F?Q(0,0,0,0)\n"),
                 HasSubstr("plant.l:3:1: error: the query '?Q' has no translation"));
     EXPECT_THAT(said("Axiom: ?(2,1)F$\n"), HasSubstr("sub-L-systems (?) have no translation"));
+    EXPECT_THAT(said("Axiom: A\nA --> F[&(30)$A]\n"), // as ABOP writes a roll
+                ::testing::AllOf(HasSubstr("plant.l:4:1: error: sub-L-systems ($) have no translation"),
+                                 HasSubstr("in cpfg '@v' rolls the turtle to the horizontal")));
     EXPECT_THAT(said("EndEach: {stop(1);}\nAxiom: F\n"),
                 HasSubstr("plant.l:3:1: error: 'stop' has no translation"));
     EXPECT_THAT(said("Axiom: F@PS(1)\n"), HasSubstr("the directive '@PS' has no translation"));

@@ -183,12 +183,23 @@ TEST(Lpy, InterpretationsAreAppliedAsOftenAsTheySay) {
     EXPECT_EQ(lpy("A", "A --> BA\ndecomposition:\nB --> FF\n").segment_count(), "8");
 }
 
+/// As the message about loops advises.
+TEST(Lpy, AModuleCountsTheTurnsOfALoop) {
+    EXPECT_EQ(lpy("A(5)", "A(n):\n  produce L(0, n)F(2)\ndecomposition:\nmaximum depth: 20\nL(i, n):\n"
+                          "  if i < n: produce F(1)[+(60)F(0.5)]L(i + 1, n)\n")
+                  .segment_count(),
+              "11");
+}
+
 TEST(Lpy, RefusesPythonByItsLine) {
     const auto said = [](const std::string& rules, const std::string& before = "") {
         return lpy("A(1)", rules, before).said();
     };
     EXPECT_THAT(said("A(n) :\n  for i in range(3):\n    nproduce F\n"),
-                HasSubstr("plant.lpy:6:3: error: 'for' is Python that has no translation"));
+                ::testing::AllOf(HasSubstr("plant.lpy:6:3: error: 'for i in range(3)' is a loop of Python"),
+                                 HasSubstr("below 'decomposition:'")));
+    EXPECT_THAT(said("A(n) :\n  while n < 3: n += 1\n  produce F\n"),
+                HasSubstr("'while n < 3' is a loop of Python, which has no translation"));
     EXPECT_THAT(said("A(n) :\n  global m\n  produce F\n"), HasSubstr("'global' is Python"));
     EXPECT_THAT(said("A(n) --> F(sizes[0])\n", "sizes = [1, 2]\n"),
                 HasSubstr("'sizes[...]' has no translation"));

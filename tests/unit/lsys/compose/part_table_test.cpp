@@ -70,7 +70,7 @@ TEST(PartTable, VerticesOfOpenPolygonsTakeTheirRoom) {
     TurtlePart part = part_of(0, 1);
     part.vertices.resize(10);
     part.polygon_ends.push_back({std::vector<Vec3>(20), 0});
-    part.polygons.emplace_back(30);
+    part.polygons.push_back({Mat3(1.0), std::vector<Vec3>(30)});
     table.add(2, 0, {}, std::move(part));
     EXPECT_EQ(table.bytes(), 2 * one + 60 * sizeof(Vec3));
 }

@@ -62,6 +62,15 @@ TEST(Sheets, AreOneSurfaceWhereLightComesThrough) {
         }
 }
 
+// Blades of grass: a turtle's disc that the model with it is stretched to.
+TEST(Sheets, AreStretchedDiscs) {
+    for (const Vec3 size : {Vec3(0.75, 0.003, 0.05), Vec3(0.01, 0.00014, 0.5), Vec3(0.25, 0.004, 0.25)}) {
+        const Graph blade = one_part(PrimitiveKind::cylinder, level * Affine::scale(size));
+        EXPECT_NEAR(seen(blade, behind, {0.003, 0.011, 0}, false).g, 0.5 * cosine, 1e-3) << size.x;
+        EXPECT_NEAR(seen(blade, in_front, {0.003, 0.011, 0}, false).g, 0.25 * cosine, 1e-3) << size.x;
+    }
+}
+
 TEST(Sheets, LetLightThroughFarOut) {
     const Graph ball = one_part(PrimitiveKind::sphere, level * Affine::scale({1, 0.0005, 1}));
     for (const double x : {-0.99, -0.5, 0.9, 0.99})
@@ -71,6 +80,9 @@ TEST(Sheets, LetLightThroughFarOut) {
 TEST(Sheets, AreThin) {
     EXPECT_EQ(seen(one_part(PrimitiveKind::cylinder, level * Affine::scale({1, 0.1, 1})), behind).g, 0);
     EXPECT_EQ(seen(one_part(PrimitiveKind::sphere, {}), behind).g, 0);
+    const Graph rod = one_part(PrimitiveKind::cylinder, Affine::scale({0.02, 1, 0.02}));
+    EXPECT_EQ(seen(rod, behind, {0.003, 0.11, 0}).g, 0);
+    EXPECT_GT(seen(rod, in_front, {0.003, 0.11, 0}).g, 0.2);
 }
 
 TEST(Sheets, StillShadeEachOther) {

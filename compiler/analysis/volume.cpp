@@ -19,7 +19,7 @@ namespace graftal {
 namespace {
 
 constexpr std::uint64_t most_steps_taken = 40'000'000; // less than a second
-constexpr std::size_t most_parts_compared = 1000;       // each is held against each
+constexpr std::size_t most_parts_compared = 1000;      // each is held against each
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const Box everywhere{Vec3(-infinity), Vec3(infinity)};

@@ -14,8 +14,8 @@ struct Sheet {
 
 /// The most that the thickness of a sheet may be.
 struct SheetLimits {
-    /// As a share of the half axis of a round face of the same area. A turtle's disc has a 25th of it,
-    /// however it is stretched within its plane.
+    /// A share of the half axis of a round face of the same area. A turtle's disc has a 25th of it, however
+    /// it is stretched within its plane.
     double of_mean = 0.05;
     double of_shorter = 0.5; ///< as a share of the shorter half axis of its faces: thicker ones are rods
 };

@@ -117,8 +117,8 @@ struct PlantTable {
 struct MeasureSettings {
     std::optional<double> ground_area; ///< above 0; nothing: the crown's convex hull, seen from above
     bool irradiance = false;           ///< the light on each organ, too
-    /// Of each organ, as far as work() allows; at least 4. 0: until the organs' light has a standard error of
-    /// 1% of its mean.
+    /// Samples of each organ, as far as work() allows; at least 4. 0: until the organs' light has a standard
+    /// error of 1 % of its mean.
     int samples = 0;
 };
 

@@ -28,8 +28,8 @@ using OnFrame = std::function<bool(std::size_t frame)>;
 Status write_animated_png(const std::string& path, const std::vector<std::string>& frames, FrameRate rate,
                           const OnFrame& on_frame);
 
-/// GIF, by giflib: 255 colours for all frames (gif_palette.h). A frame lasts a whole number of hundredths of a
-/// second.
+/// GIF, by giflib: 255 colours for all frames (gif_palette.h). A frame lasts a whole number of hundredths of
+/// a second.
 Status write_gif(const std::string& path, const std::vector<std::string>& frames, FrameRate rate,
                  const OnFrame& on_frame);
 

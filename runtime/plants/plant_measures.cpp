@@ -196,8 +196,8 @@ class Measurer {
         include_ellipse(disc.start, a, b, std::hypot(a.y, b.y));
     }
 
-    /// What is an ellipse from above, with these axes. `height`: how far it reaches above its centre, and
-    /// below.
+    /// An ellipse as it is seen from above, with these axes. `height`: how far it reaches above its centre,
+    /// and below.
     void include_ellipse(Vec3 centre, Vec3 a, Vec3 b, double height) {
         outline_.add_ellipse({centre.x, centre.z}, {a.x, a.z}, {b.x, b.z});
         lowest_ = std::min(lowest_, centre.y - height);

@@ -12,7 +12,7 @@
 #include "compiler/support/files.h"
 #include "compiler/support/workers.h"
 #include "runtime/image/image.h"
-#include "runtime/studio/stored.h"
+#include "runtime/studio/files/stored.h"
 #include "runtime/trace/model/trace_model.h"
 
 namespace graftal {

@@ -10,7 +10,7 @@
 #include "compiler/session/stages.h"
 #include "runtime/studio/asks.h"
 #include "runtime/studio/binary_message.h"
-#include "runtime/studio/file_asks.h"
+#include "runtime/studio/files/file_asks.h"
 #include "runtime/studio/message_reader.h"
 #include "runtime/studio/model_message.h"
 #include "runtime/studio/picture/clock.h"

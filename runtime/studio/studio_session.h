@@ -13,8 +13,8 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/support/files.h"
+#include "runtime/studio/files/linked_files.h"
 #include "runtime/studio/film_framing.h"
-#include "runtime/studio/linked_files.h"
 #include "runtime/studio/picture/progressive_picture.h"
 #include "runtime/studio/pointer.h"
 #include "runtime/studio/studio_home.h"

@@ -391,7 +391,10 @@ void Turtle::close_polygon(int colour, Span span) {
             part_.has_bodies = true;
             ++bodies_;
             const auto& [axes, vertices] = polygons_.back();
-            if (!context_.bodies.add_polygon(vertices, axes, colour, span, sink(false)))
+            // A word that is drawn again says nothing again.
+            const auto is_known = [&](const Diagnostic& known) { return known.span == span; };
+            if (!context_.bodies.add_polygon(vertices, axes, colour, span, sink(false)) &&
+                std::ranges::none_of(context_.diagnostics.all(), is_known))
                 context_.diagnostics
                     .warning(span, "the picture covers each triangle of this polygon by itself")
                     .with_hint(fmt::format("it covers a polygon once that is flat, does not meet itself and "

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/export/export_model.h"
+#include "runtime/image_files/texture_store.h"
 #include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
@@ -102,5 +103,15 @@ inline const std::string shrub = // ends, with materials and tints
     "  branch rotate: y, 240 scale: 0.7\n"
     "}\n";
 constexpr int leaves_of_shrub = 3 + 9 + 27; // all that nobody else places
+
+/// Puts the picture bark.png beside the model.
+inline void write_bark(const Exporting& exporting) {
+    Texture picture;
+    picture.width = picture.height = 1;
+    picture.texels = {{{200, 100, 50}, false}};
+    PendingFile file(exporting.path("bark.png"));
+    EXPECT_TRUE(write_texture(file, picture).ok());
+    EXPECT_TRUE(file.commit().ok());
+}
 
 } // namespace graftal

@@ -64,8 +64,12 @@ Sizes sizes_of(const MeshData& mesh) {
     return sizes;
 }
 
+struct NamedText {
+    std::string name, text;
+};
+
 TEST(Stl, SolidsAreWatertight) {
-    const std::pair<const char*, std::string> models[] = {
+    const NamedText models[] = {
         {"cubes.rifs", cubes},
         {"round.inst",
          "object m {\n sphere scale: 1, 0.3, 2 rotate: x, 33\n torus rotate: z, 10 translate: 3, 0, "
@@ -338,21 +342,11 @@ std::size_t most_listed(const std::string& text, const std::string& words) {
     return most;
 }
 
-/// Puts the picture bark.png beside the model.
-void write_bark(const Exporting& exporting) {
-    Texture picture;
-    picture.width = picture.height = 1;
-    picture.texels = {{{200, 100, 50}, false}};
-    PendingFile file(exporting.path("bark.png"));
-    EXPECT_TRUE(write_texture(file, picture).ok());
-    EXPECT_TRUE(file.commit().ok());
-}
-
 /// A picture makes no soup of triangles: corners that agree in place, normal and texture point are one
 /// vertex.
 TEST(Formats, ShareTheVerticesOfWhatHasAPicture) {
     const std::string bark = "material bark { texture: \"bark.png\" }\n";
-    const std::pair<std::string, std::string> models[] = {
+    const NamedText models[] = {
         {"cube.inst", bark + "object m { cube material: bark }\n"},
         {"round.inst", bark + "object m { cylinder material: bark }\n"},
         {"skin.lsys",
@@ -392,7 +386,7 @@ TEST(Formats, ShareTheVerticesOfWhatHasAPicture) {
 /// A turtle's polygon as one of `.inst`: its triangles have parts of one picture.
 TEST(Formats, CoverATurtlesPolygonOnce) {
     const std::string bark = "material bark { texture: \"bark.png\" }\n";
-    const std::pair<std::string, std::string> models[] = {
+    const NamedText models[] = {
         {"m.lsys", bark + "lsys m { steps 0\n colors bark\n"
                           " axiom {.+(28)f(0.5)-(28)f(0.4)-(40)f(0.35)-(104)f(0.35)-(40)f(0.4)}\n}\n"},
         {"m.inst", bark + "object m { polygon(0,0, -0.2347,0.4415, -0.2347,0.8415, -0.0098,1.1096,"
@@ -403,9 +397,9 @@ TEST(Formats, CoverATurtlesPolygonOnce) {
         ASSERT_TRUE(exporting.to("m.obj")) << exporting.said();
         const std::string obj = exporting.read("m.obj");
         const std::vector<std::string> places = lines_after(obj, "v "), points = lines_after(obj, "vt ");
-        ASSERT_EQ(places.size(), 6u) << name;
-        ASSERT_EQ(points.size(), 6u) << name;
-        for (std::size_t i = 0; i < 6; ++i) {
+        ASSERT_GE(places.size(), 6u) << name;
+        ASSERT_EQ(points.size(), places.size()) << name;
+        for (std::size_t i = 0; i < places.size(); ++i) {
             double x = 0, y = 0, u = 0, v = 0;
             ASSERT_EQ(std::sscanf(places[i].c_str(), "%lf %lf", &x, &y), 2);
             ASSERT_EQ(std::sscanf(points[i].c_str(), "%lf %lf", &u, &v), 2);

@@ -37,7 +37,7 @@ TEST(UnitedFacets, ALeafIsOneMeshInUsd) {
     const std::size_t points = usd.find("point3f[] points = [");
     ASSERT_NE(points, std::string::npos);
     EXPECT_EQ(count_of(usd.substr(points, usd.find(']', points + 20) - points), "("), 5u);
-    EXPECT_EQ(count_of(usd, "def Xform \"p"), 2u); // the two leaves
+    EXPECT_EQ(count_of(usd, "def Xform \"p"), 3u); // the two leaves, and the mesh in their master
 }
 
 // Triangles and their area stay as they are.
@@ -98,6 +98,7 @@ TEST(UnitedFacets, LeavePicturesAlone) {
     const std::string text = "material bark { texture: \"bark.png\" }\nobject m {\n triangle material: bark\n"
                              " triangle material: bark translate: 3, 0, 0\n}\n";
     Exporting exporting("m.inst", text);
+    write_bark(exporting);
     std::optional<UnfoldedScene> scene = exporting.scene(SceneMeshes::shared);
     ASSERT_TRUE(scene) << exporting.said();
     scene = resolve_looks(*scene, {}, {}, exporting.compilation.diagnostics);

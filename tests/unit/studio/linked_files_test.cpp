@@ -1,10 +1,10 @@
 // Links hold the files that their models use, and open with them; none of theirs leads out of the root.
 
-#include "runtime/studio/linked_files.h"
+#include "runtime/studio/files/linked_files.h"
 
 #include <gtest/gtest.h>
 
-#include "runtime/studio/file_asks.h"
+#include "runtime/studio/files/file_asks.h"
 #include "tests/unit/studio/page.h"
 
 namespace graftal {

@@ -1,4 +1,4 @@
-#include "runtime/studio/stored.h"
+#include "runtime/studio/files/stored.h"
 
 #include <gtest/gtest.h>
 #include <zlib.h>

@@ -14,6 +14,7 @@
 
 #include "compiler/graph/unfold.h"
 #include "compiler/languages/lower.h"
+#include "compiler/support/files.h"
 
 namespace graftal::testing {
 namespace {
@@ -96,9 +97,13 @@ struct Drawn {
                    unsigned steps = 2) {
         LowerOptions options;
         options.steps = steps;
+        MemoryFiles files;
+        files.set("leaf.png", "");
+        LowerHelp help;
+        help.files = &files;
         const LoweredText lowered = lower_text(
             "m.lsys", "material m { " + material + " }\nlsys m {\n colors m\n" + statements + "\n}\n",
-            options, sources, diagnostics);
+            options, sources, diagnostics, help);
         if (!lowered.graph) throw std::runtime_error(diagnostics.render(sources));
         unfold(*lowered.graph, lowered.graph->root, Affine());
     }

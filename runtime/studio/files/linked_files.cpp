@@ -1,4 +1,4 @@
-#include "runtime/studio/linked_files.h"
+#include "runtime/studio/files/linked_files.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "runtime/studio/file_asks.h"
+#include "runtime/studio/files/file_asks.h"
 
 #include <algorithm>
 #include <cctype>

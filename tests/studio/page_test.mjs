@@ -18,13 +18,14 @@ const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 const browser = await open_browser(modules), test = tester(browser, (opened, told) => serve(folder, modules, opened, told));
 
 test('an error is underlined, and its mending changes the picture', async (hand, page) => {
+  await hand.settled();
+  const before = await hand.pixels();
   await hand.type_at('terminal', ' oops');
   await page.waitForSelector('.cm-lintRange-error');
   assert.match(await page.textContent('#finding'), /Line 9: .*does not know the word oops.*words that may stand here/);
   assert.ok(await page.isVisible('#stale'), 'the page says that it shows the last good picture');
   await page.hover('.cm-lintRange-error');
   await page.waitForSelector('.cm-tooltip-lint .hint');
-  const before = await hand.pixels();
   for (let i = 0; i < 5; ++i) await page.keyboard.press('Backspace');
   await hand.until(async () => !(await page.isVisible('#stale')), 'the picture is good again');
   await hand.settled();

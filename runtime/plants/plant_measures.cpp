@@ -110,7 +110,8 @@ class Measurer {
         const Vec3 along = direction_of(module);
         project([&](Vec3 d) { return mean_width * module.length * glm::length(glm::cross(along, d)); },
                 &Projected::wood_area);
-        include_round(module.start, module.base_width / 2);
+        const double base = module.base_width / 2; // flat, where the other end is a ball
+        include_ellipse(module.start, base * module.left, base * module.up);
         include_round(module.end, module.width / 2);
         if (!bears_[id]) {
             ++measures_.tips;
@@ -139,7 +140,7 @@ class Measurer {
         sums.leaf_area = module.area;
         if (module.organ == Organ::disc) {
             add_facet(module.area * module.up);
-            include_disc(module);
+            include_ellipse(module.start, module.width / 2 * module.heading, module.width / 2 * module.left);
             return;
         }
         while (next_blade_ < plant_.blades.size() && plant_.blades[next_blade_].module < id)
@@ -188,17 +189,14 @@ class Measurer {
 
     /// The ball about a point.
     void include_round(Vec3 centre, double radius) {
-        include_ellipse(centre, radius * Vec3(1, 0, 0), radius * Vec3(0, 0, 1), radius);
+        include_ellipse(centre, radius * Vec3(1, 0, 0), radius * Vec3(0, 0, 1));
+        lowest_ = std::min(lowest_, centre.y - radius);
+        highest_ = std::max(highest_, centre.y + radius);
     }
 
-    void include_disc(const PlantModule& disc) {
-        const Vec3 a = disc.width / 2 * disc.heading, b = disc.width / 2 * disc.left;
-        include_ellipse(disc.start, a, b, std::hypot(a.y, b.y));
-    }
-
-    /// An ellipse as it is seen from above, with these axes. `height`: how far it reaches above its centre,
-    /// and below.
-    void include_ellipse(Vec3 centre, Vec3 a, Vec3 b, double height) {
+    /// The ellipse with these half axes.
+    void include_ellipse(Vec3 centre, Vec3 a, Vec3 b) {
+        const double height = std::hypot(a.y, b.y);
         outline_.add_ellipse({centre.x, centre.z}, {a.x, a.z}, {b.x, b.z});
         lowest_ = std::min(lowest_, centre.y - height);
         highest_ = std::max(highest_, centre.y + height);

@@ -94,9 +94,9 @@ class Gif {
             below = std::max(below, y + 1);
         }
         if (right == 0) left = top = 0, right = below = 1; // a frame of one clear pixel
+        const GraphicsControlBlock stays{DISPOSE_DO_NOT, false, delay_hundredths_, clear};
         GifByteType control[4];
-        EGifGCBToExtension(std::data({GraphicsControlBlock{DISPOSE_DO_NOT, false, delay_hundredths_, clear}}),
-                           control);
+        EGifGCBToExtension(&stays, control);
         bool is_put = EGifPutExtension(gif_, GRAPHICS_EXT_FUNC_CODE, sizeof control, control) == GIF_OK &&
                       EGifPutImageDesc(gif_, static_cast<int>(left), static_cast<int>(top),
                                        static_cast<int>(right - left), static_cast<int>(below - top), false,

@@ -302,11 +302,12 @@ class Worker {
 
     /// Pixels without samples show those of a neighbour in the tile, until their noise is taken out.
     void show_neighbours(const Sampling& sampling, const Tile& tile, Image& picture) const {
+        if (sampling.sparse == 1) return;
         const int right = tile.x + tile.width, below = tile.y + tile.height;
         for (int y = tile.y; y < below; ++y)
-            for (int x = tile.x; x < right; ++x)
+            for (int x = tile.x; x < right; ++x) {
+                if (has_samples(sampling, x, y)) continue;
                 for (const auto& [dx, dy] : {std::pair(-1, 0), {0, -1}, {-1, -1}, {1, 0}, {0, 1}, {1, 1}}) {
-                    if (has_samples(sampling, x, y)) break;
                     const int i = x + dx, j = y + dy;
                     if (i < tile.x || i >= right || j < tile.y || j >= below || !has_samples(sampling, i, j))
                         continue;
@@ -315,6 +316,7 @@ class Worker {
                         picture.pixels.begin() + 3 * static_cast<std::ptrdiff_t>(index_in_window(x, y)));
                     break;
                 }
+            }
     }
 
     std::uint64_t seed_of(int x, int y) const {

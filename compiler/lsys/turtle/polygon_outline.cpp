@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "compiler/lsys/turtle/thin_ring.h"
 #include "compiler/lsys/turtle/triangulate.h"
 
 namespace graftal {
@@ -44,18 +45,10 @@ bool is_straight(Vec2 a, Vec2 b, Vec2 c) {
 
 /// Leaves out corners between their neighbours, spikes and repeated ones.
 void drop_straight_corners(std::vector<Vec2>& corners) {
-    std::size_t at = 0, since_drop = 0;
-    while (corners.size() > 2 && since_drop < corners.size()) {
+    thin_ring(corners, [&](std::size_t at) {
         const Vec2 before = corners[(at + corners.size() - 1) % corners.size()];
-        if (is_straight(before, corners[at], corners[(at + 1) % corners.size()])) {
-            corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(at));
-            since_drop = 0;
-            at = (at + corners.size() - 1) % corners.size(); // its neighbour may be straight now
-        } else {
-            ++since_drop;
-            at = (at + 1) % corners.size();
-        }
-    }
+        return is_straight(before, corners[at], corners[(at + 1) % corners.size()]);
+    });
 }
 
 } // namespace

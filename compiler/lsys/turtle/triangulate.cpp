@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "compiler/lsys/turtle/thin_ring.h"
+
 namespace graftal {
 
 namespace {
@@ -63,17 +65,7 @@ class EarClipper {
   private:
     /// Corners that lie between their neighbours, and spikes: what they decide would be decided by rounding.
     void drop_straight_corners() {
-        std::size_t at = 0, since_drop = 0;
-        while (left_.size() > 2 && since_drop < left_.size()) {
-            if (std::abs(turn_at(at)) <= least_area_) {
-                left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(at));
-                since_drop = 0;
-                at = (at + left_.size() - 1) % left_.size(); // its neighbour may be straight now
-            } else {
-                ++since_drop;
-                at = (at + 1) % left_.size();
-            }
-        }
+        thin_ring(left_, [&](std::size_t at) { return std::abs(turn_at(at)) <= least_area_; });
     }
 
     double turn_at(std::size_t at) const {

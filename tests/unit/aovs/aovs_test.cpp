@@ -324,7 +324,7 @@ const std::string six_leaves = "canonical object leaf { instance: sphere scale: 
                                "object m { instance: tree translate: -1.2, 0, 0\n  instance: tree\n"
                                "  instance: tree translate: 1.2, 0, 0 }\n";
 
-/// By instance, the middles of the columns of its pixels, in the units of a picture four wide.
+/// Middles of the columns of the pixels of each instance, in the units of a picture four wide.
 std::map<std::uint32_t, std::set<double>> columns_of_instances(const Channels& channels) {
     std::map<std::uint32_t, std::set<double>> columns;
     for (int j = 0; j < channels.height; ++j)

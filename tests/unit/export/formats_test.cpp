@@ -252,12 +252,7 @@ TEST(Formats, NameMaterialsPicturesAndLight) {
                         "material bark { texture: \"bark.png\" }\n"
                         "material blade { color: 0.2,0.5,0.1  diffuse: 0.6  translucency: 0.4 }\n"
                         "object m {\n cube material: bark\n cube material: blade  translate: 3, 0, 0\n}\n");
-    Texture picture;
-    picture.width = picture.height = 1;
-    picture.texels = {{{200, 100, 50}, false}};
-    PendingFile file(exporting.path("bark.png"));
-    ASSERT_TRUE(write_texture(file, picture).ok());
-    ASSERT_TRUE(file.commit().ok());
+    write_bark(exporting);
     Image sky{2, 2, 3, {1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0}};
     ASSERT_TRUE(write_image(exporting.path("half.exr"), sky, SampleFormat::linear16).ok());
     ASSERT_TRUE(exporting.to("m.usda")) << exporting.said();

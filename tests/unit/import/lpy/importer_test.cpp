@@ -183,7 +183,7 @@ TEST(Lpy, InterpretationsAreAppliedAsOftenAsTheySay) {
     EXPECT_EQ(lpy("A", "A --> BA\ndecomposition:\nB --> FF\n").segment_count(), "8");
 }
 
-/// As the message about loops advises.
+/// The message about loops advises this.
 TEST(Lpy, AModuleCountsTheTurnsOfALoop) {
     EXPECT_EQ(lpy("A(5)", "A(n):\n  produce L(0, n)F(2)\ndecomposition:\nmaximum depth: 20\nL(i, n):\n"
                           "  if i < n: produce F(1)[+(60)F(0.5)]L(i + 1, n)\n")

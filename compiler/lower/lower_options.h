@@ -22,6 +22,7 @@ namespace graftal {
 
 struct OrbitModel;
 struct Plant;
+struct PlantTotals;
 class ParsedFiles;
 
 struct LowerOptions {
@@ -37,7 +38,7 @@ struct LowerOptions {
     /// resolved. Where it is "", they may lie anywhere.
     std::string root;
     /// Result that is wanted of the root model, an L-system, in place of a graph.
-    enum class InPlace : std::uint8_t { nothing, word, plant };
+    enum class InPlace : std::uint8_t { nothing, word, plant, totals };
     InPlace in_place = InPlace::nothing;
     bool exact = false; ///< L-systems are derived module by module: one honest random tree
     std::uint64_t max_modules = 50'000'000; ///< of a derived word
@@ -88,6 +89,7 @@ struct LowerNotes {
     std::optional<Derivation> derivation;         ///< of an L-system
     std::optional<std::string> word;              ///< that LowerOptions::in_place asks for
     std::shared_ptr<const Plant> plant;           ///< or null; likewise
+    std::shared_ptr<const PlantTotals> totals;    ///< or null; likewise
     std::shared_ptr<const OrbitModel> orbit;      ///< or null; what is one has no graph
     std::map<std::string, FileStamp> meshes = {}; ///< by path: the files of meshes, as they were when read
     std::vector<ModelParameter> parameters = {};  ///< of the root model, in the order of its text

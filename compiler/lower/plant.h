@@ -48,6 +48,17 @@ struct PlantModule {
     double age = -1;         ///< steps since it came into being; -1: not known
 };
 
+/// Whether a module or a body is drawn as a segment that has a length.
+template<typename Drawn> bool is_segment(const Drawn& drawn) {
+    return drawn.organ == Organ::segment && drawn.length > 0;
+}
+
+/// Whether it is drawn as a blade: a polygon, a disc, or a flat model (lsys/turtle/flat_model.h).
+template<typename Drawn> bool is_blade(const Drawn& drawn) {
+    return drawn.organ == Organ::polygon || drawn.organ == Organ::disc ||
+           (drawn.organ == Organ::model && drawn.is_measured);
+}
+
 using PlantTriangle = std::array<Vec3, 3>;
 
 /// One side of a polygon, or of a model that is flat (lsys/turtle/flat_model.h).

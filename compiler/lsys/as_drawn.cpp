@@ -13,14 +13,13 @@
 #include "compiler/lsys/derive/word.h"
 #include "compiler/lsys/turtle/witness.h"
 #include "compiler/lsys/walk/plant.h"
+#include "compiler/lsys/walk/plant_tally.h"
 #include "compiler/lsys/walk/queries.h"
 #include "compiler/support/number.h"
 
 namespace graftal {
 
 namespace {
-
-constexpr std::uint64_t most_written = 5'000'000;
 
 bool is_in_name(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
@@ -144,7 +143,7 @@ std::optional<std::string> word_as_drawn(const LsysGrammar& grammar, const Model
                                          LsysDrawOptions options, Graph& graph, ObjectPool& pool,
                                          Diagnostics& diagnostics) {
     if (!has_word(grammar, options, diagnostics)) return std::nullopt;
-    const std::uint64_t most = std::min(most_written, options.max_modules);
+    const std::uint64_t most = std::min(most_told_modules, options.max_modules);
     if (!is_composed(grammar, options)) {
         LsysRewriter rewriter(grammar, diagnostics, options.seed, options.meter);
         if (options.exact) rewriter.use_no_pool();
@@ -164,7 +163,7 @@ std::shared_ptr<const Plant> plant_as_drawn(const LsysGrammar& grammar, const Mo
                                             LsysDrawOptions options, Graph& graph, ObjectPool& pool,
                                             Diagnostics& diagnostics) {
     if (!has_word(grammar, options, diagnostics)) return nullptr;
-    const std::uint64_t most = std::min(most_written, options.max_modules);
+    const std::uint64_t most = std::min(most_told_modules, options.max_modules);
     LsysGrammar aged = grammar;
     if (!is_composed(grammar, options)) {
         options.max_modules = most;
@@ -174,6 +173,15 @@ std::shared_ptr<const Plant> plant_as_drawn(const LsysGrammar& grammar, const Mo
     PlantBuilder plant(aged, *options.steps + options.share, most, diagnostics);
     if (!tell_lsys(aged, models, options, graph, pool, diagnostics, plant)) return nullptr;
     return std::make_shared<const Plant>(std::move(plant).take());
+}
+
+std::shared_ptr<const PlantTotals> totals_as_drawn(const LsysGrammar& grammar, const ModelPlacer& models,
+                                                   const LsysDrawOptions& options, Graph& graph,
+                                                   ObjectPool& pool, Diagnostics& diagnostics) {
+    if (!options.steps || options.exact || grammar.needs_word) return nullptr;
+    PlantTally tally(grammar, *options.steps + options.share);
+    if (!tell_lsys(grammar, models, options, graph, pool, diagnostics, tally)) return nullptr;
+    return std::make_shared<const PlantTotals>(tally.totals());
 }
 
 } // namespace graftal

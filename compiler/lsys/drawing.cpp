@@ -81,9 +81,7 @@ class Drawer {
     std::optional<LsysDrawing> draw(Graph& graph, ObjectPool& pool) {
         if (!choose_palette(graph)) return std::nullopt;
         if (!options_.steps) return draw_limit(graph, pool);
-        steps_ = *options_.steps;
-        if (options_.exact) rewriter_.use_no_pool();
-        if (!(options_.exact || grammar_.needs_word ? derive() : choose_parts(graph))) return std::nullopt;
+        if (!choose_way(graph)) return std::nullopt;
         if (in_run_) return draw_run(graph);
         std::optional<LsysDrawing> drawing = compose(graph, pool);
         if (drawing || !gave_up_) return drawing;
@@ -93,12 +91,9 @@ class Drawer {
 
     bool tell(Graph& graph, ObjectPool& pool, WordWitness& witness) {
         if (!choose_palette(graph)) return false;
-        steps_ = *options_.steps;
-        if (options_.exact) rewriter_.use_no_pool();
-        const bool by_chance = grammar_.is_stochastic;
-        if (!(options_.exact || grammar_.needs_word || !by_chance ? derive() : choose_parts(graph)))
-            return false;
-        if (in_run_ || !by_chance) return tell_run(graph, witness);
+        const bool composes = witness.sums() || grammar_.is_stochastic;
+        if (!choose_way(graph, composes)) return false;
+        if (in_run_ || !composes) return tell_run(graph, witness);
         if (!choose_width(graph)) return false;
         Composition composition(*this, graph, pool, draws_lines(grammar_), models_);
         composition.bodies.tell(witness);
@@ -107,6 +102,13 @@ class Drawer {
     }
 
   private:
+    /// Derives the word, as it must be without `composes`, or chooses the parts. False after an error.
+    bool choose_way(const Graph& graph, bool composes = true) {
+        steps_ = *options_.steps;
+        if (options_.exact) rewriter_.use_no_pool();
+        return options_.exact || grammar_.needs_word || !composes ? derive() : choose_parts(graph);
+    }
+
     bool choose_palette(Graph& graph) {
         std::optional<std::vector<Material>> palette = palette_of(grammar_, graph, diagnostics_);
         if (palette) palette_ = std::move(*palette);
@@ -256,8 +258,20 @@ class Drawer {
         return drawing;
     }
 
+    /// The width by which draw_lsys() draws it, where that composes it: the figure's reach is then a bound.
+    void choose_width_as_composed(const Graph& graph) {
+        Graph scratch = graph;
+        Diagnostics quiet;
+        Drawer other(grammar_, models_, options_, quiet);
+        if (!other.choose_palette(scratch) || !other.choose_way(scratch) || other.in_run_) return;
+        if (!other.choose_width(scratch)) return;
+        width_ = other.width_;
+        width_is_open_ = false;
+    }
+
     /// Module by module, once more where the width depends on the figure.
     bool tell_run(Graph& graph, WordWitness& witness) {
+        if (width_is_open_) choose_width_as_composed(graph);
         if (width_is_open_) {
             struct : WordWitness {
                 bool begins(const Module&, const Turtle&) override { return true; }

@@ -53,7 +53,8 @@ std::optional<LsysDrawing> draw_lsys(const LsysGrammar& grammar, const ModelPlac
                                      Diagnostics& diagnostics);
 
 /// Has a witness hear of the word that draw_lsys() draws, by the same choices of chance, and of its bodies,
-/// as thick as it draws them. False after an error. Requires steps. O(modules that are drawn).
+/// as thick as it draws them. False after an error, or where a witness sums up parts that hardly
+/// repeat. Requires steps. O(modules that are drawn), or of parts.
 bool tell_lsys(const LsysGrammar& grammar, const ModelPlacer& models, const LsysDrawOptions& options,
                Graph& graph, ObjectPool& pool, Diagnostics& diagnostics, WordWitness& witness);
 

@@ -374,17 +374,33 @@ class LsysLowering {
                 .meter = &lowering_.meter};
     }
 
+    /// Notes what is wanted in place of a graph.
+    void tell(const LsysGrammar& grammar, const std::map<SymbolId, Model>& models,
+              const LsysDrawOptions& options) {
+        const ModelPlacer place = placer(models);
+        LowerNotes& notes = lowering_.notes;
+        switch (lowering_.options.in_place) {
+        case LowerOptions::InPlace::nothing:
+            break;
+        case LowerOptions::InPlace::word:
+            notes.word = word_as_drawn(grammar, place, options, graph_, pool_, diagnostics_);
+            break;
+        case LowerOptions::InPlace::plant:
+            notes.plant = plant_as_drawn(grammar, place, options, graph_, pool_, diagnostics_);
+            break;
+        case LowerOptions::InPlace::totals:
+            notes.totals = totals_as_drawn(grammar, place, options, graph_, pool_, diagnostics_);
+            break;
+        }
+    }
+
     std::optional<ObjectId> draw(const Block& block, const LsysGrammar& grammar,
                                  const std::map<SymbolId, Model>& models, std::optional<unsigned> steps) {
         const LsysBlock& source = *block.source;
         const LsysDrawOptions options = draw_options(block, grammar, models, steps);
         lowering_.notes.asks_chance |= grammar.asks_chance();
         if (lowering_.options.in_place != LowerOptions::InPlace::nothing && is_root(block)) {
-            LowerNotes& notes = lowering_.notes;
-            if (lowering_.options.in_place == LowerOptions::InPlace::word)
-                notes.word = word_as_drawn(grammar, placer(models), options, graph_, pool_, diagnostics_);
-            else
-                notes.plant = plant_as_drawn(grammar, placer(models), options, graph_, pool_, diagnostics_);
+            tell(grammar, models, options);
             return std::nullopt;
         }
         std::optional<LsysDrawing> drawing =

@@ -165,7 +165,8 @@ bool Session::need_lowered(const StageOptions& options, bool wanted, Compilation
                 sources_, findings);
             const Derivation* const derivation =
                 model && model->notes.derivation ? &*model->notes.derivation : nullptr;
-            key.reads_steps = reads_steps_ = !model || derivation || model->notes.word || model->notes.plant;
+            key.reads_steps = reads_steps_ =
+                !model || derivation || model->notes.word || model->notes.plant || model->notes.totals;
             key.reads_time = !model || (derivation && derivation->timed);
             key.limited_by_work = !model || model->notes.limited_by_work;
             if (model) meshes_ = model->notes.meshes;

@@ -173,7 +173,8 @@ std::optional<LoweredModel> lower_source(const Source& source, const LowerOption
     if (help.control.work) model.work_seconds = help.control.work->seconds();
     const bool draws_nothing =
         model.notes.derivation && options.may_draw_nothing && !diagnostics.has_errors();
-    const bool has_other = model.notes.orbit || model.notes.word || model.notes.plant;
+    const LowerNotes& notes = model.notes;
+    const bool has_other = notes.orbit || notes.word || notes.plant || notes.totals;
     if (!model.graph && !has_other && !draws_nothing) return std::nullopt;
     return model;
 }

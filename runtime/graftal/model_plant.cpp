@@ -88,13 +88,20 @@ Result<PlantReport> Model::measures(const MeasureSettings& settings) {
             return std::nullopt;
         }
         const StageOptions& stages = parts_->options.compile;
-        const auto plant = plant_of_model(parts_->session, stages,
-                                          "only L-systems have a plant that can be measured", compilation);
+        const char* const else_error = "only L-systems have a plant that can be measured";
+        const auto [plant, totals] =
+            settings.irradiance
+                ? PlantOrTotals{plant_of_model(parts_->session, stages, else_error, compilation), nullptr}
+                : plant_or_totals_of_model(parts_->session, stages, else_error, compilation);
+        PlantReport report;
+        if (totals) {
+            report.json = totals_json(parts_->path, *totals, settings.ground_area);
+            return report;
+        }
         if (!plant) return std::nullopt;
         const auto measures =
             measures_of_model(parts_->session, stages, *plant, settings.ground_area, compilation);
         if (!measures) return std::nullopt;
-        PlantReport report;
         std::optional<PlantLight> light;
         if (settings.irradiance) {
             light = light_of_model(parts_->session, parts_->options, *plant,

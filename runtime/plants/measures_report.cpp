@@ -101,11 +101,17 @@ Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+/// A number where programs hold it exactly, else its digits in a string.
+Json count(const BigCount& value) {
+    constexpr std::uint64_t exact = 1ull << 53;
+    return value <= exact ? Json(value.convert_to<std::uint64_t>()) : Json(value.str());
+}
+
 /// Adds the sums to a row.
 Json with_sums(Json row, const PlantSums& sums) {
-    row.update({{"modules", sums.modules},
-                {"segments", sums.segments},
-                {"leaves", sums.leaves},
+    row.update({{"modules", count(sums.modules)},
+                {"segments", count(sums.segments)},
+                {"leaves", count(sums.leaves)},
                 {"length", sums.length},
                 {"wood_area", sums.wood_area},
                 {"wood_volume", sums.wood_volume},
@@ -113,14 +119,10 @@ Json with_sums(Json row, const PlantSums& sums) {
     return row;
 }
 
-bool is_empty(const PlantSums& sums) {
-    return sums.modules == 0 && sums.segments == 0 && sums.leaves == 0;
-}
-
 Json names_json(const std::vector<NamedSums>& all, const char* key) {
     Json rows = Json::array();
     for (const NamedSums& sums : all)
-        if (!is_empty(sums))
+        if (!sums.empty())
             rows.push_back(with_sums({{key, sums.name.empty() ? Json(nullptr) : Json(sums.name)}}, sums));
     return rows;
 }
@@ -170,7 +172,7 @@ Json projected_json(const PlantMeasures& measures) {
 Json ranks_json(const PlantMeasures& measures) {
     Json rows = Json::array();
     for (std::size_t i = 0; i < measures.ranks.size(); ++i)
-        if (!is_empty(measures.ranks[i])) rows.push_back(with_sums({{"rank", i}}, measures.ranks[i]));
+        if (!measures.ranks[i].empty()) rows.push_back(with_sums({{"rank", i}}, measures.ranks[i]));
     return rows;
 }
 
@@ -198,10 +200,10 @@ Json json_of(std::string_view model, const PlantMeasures& measures, const PlantL
     Json json = {
         {"model", model},
         {"steps", measures.steps},
-        {"modules", all.modules},
-        {"segments", all.segments},
+        {"modules", count(all.modules)},
+        {"segments", count(all.segments)},
         {"tips", measures.tips},
-        {"leaves", all.leaves},
+        {"leaves", count(all.leaves)},
         {"balls", measures.balls},
         {"unmeasured", measures.unmeasured},
         {"length", all.length},
@@ -225,6 +227,33 @@ Json json_of(std::string_view model, const PlantMeasures& measures, const PlantL
                  {"ranks", ranks_json(measures)},
                  {"names", names_json(measures.names, "name")},
                  {"materials", names_json(measures.materials, "material")}});
+    return json;
+}
+
+Json json_of(std::string_view model, const PlantTotals& totals, std::optional<double> ground_area) {
+    const PlantSums& all = totals.all;
+    Json orders = Json::array();
+    for (std::size_t i = 0; i < totals.orders.size(); ++i)
+        orders.push_back(with_sums({{"order", i}}, totals.orders[i]));
+    Json json = {
+        {"model", model},
+        {"steps", totals.steps},
+        {"modules", count(all.modules)},
+        {"segments", count(all.segments)},
+        {"leaves", count(all.leaves)},
+        {"balls", count(totals.balls)},
+        {"unmeasured", count(totals.unmeasured)},
+        {"length", all.length},
+        {"wood", {{"area", all.wood_area}, {"volume", all.wood_volume}}},
+        {"leaf", {{"area", all.leaf_area}}},
+    };
+    if (ground_area) {
+        json["ground"] = {{"area", *ground_area}};
+        json["leaf_area_index"] = number(all.leaf_area / *ground_area);
+    }
+    json.update({{"orders", orders},
+                 {"names", names_json(totals.names, "name")},
+                 {"materials", names_json(totals.materials, "material")}});
     return json;
 }
 
@@ -258,18 +287,16 @@ std::string table(const std::string& name, const Json& rows) {
     return text;
 }
 
-} // namespace
-
-std::string measures_json(std::string_view model, const PlantMeasures& measures, const PlantLight* light) {
-    return json_of(model, measures, light).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+std::string text_of_json(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string measures_text(std::string_view model, const PlantMeasures& measures, const PlantLight* light) {
+/// A line a key, and a table for each list.
+std::string text_for_people(const Json& json) {
     std::string lines, tables;
     const auto add = [&lines](const std::string& key, const Json& value) {
         lines += fmt::format("{:<30} {}\n", key, cell(value));
     };
-    const Json json = json_of(model, measures, light);
     for (const auto& [key, value] : json.items()) {
         if (value.is_array()) {
             tables += table(key, value);
@@ -281,6 +308,26 @@ std::string measures_text(std::string_view model, const PlantMeasures& measures,
         }
     }
     return lines + tables;
+}
+
+} // namespace
+
+std::string measures_json(std::string_view model, const PlantMeasures& measures, const PlantLight* light) {
+    return text_of_json(json_of(model, measures, light));
+}
+
+std::string measures_text(std::string_view model, const PlantMeasures& measures, const PlantLight* light) {
+    return text_for_people(json_of(model, measures, light));
+}
+
+std::string totals_json(std::string_view model, const PlantTotals& totals,
+                        std::optional<double> ground_area) {
+    return text_of_json(json_of(model, totals, ground_area));
+}
+
+std::string totals_text(std::string_view model, const PlantTotals& totals,
+                        std::optional<double> ground_area) {
+    return text_for_people(json_of(model, totals, ground_area));
 }
 
 std::span<const MeasuresKey> measures_keys() {

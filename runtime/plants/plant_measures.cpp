@@ -227,17 +227,6 @@ class Measurer {
 
 } // namespace
 
-PlantSums& PlantSums::operator+=(const PlantSums& other) {
-    modules += other.modules;
-    segments += other.segments;
-    leaves += other.leaves;
-    length += other.length;
-    wood_area += other.wood_area;
-    wood_volume += other.wood_volume;
-    leaf_area += other.leaf_area;
-    return *this;
-}
-
 void RunningMean::add(double value) {
     ++count_;
     const double before = value - mean_;

@@ -6,26 +6,11 @@
 #include <vector>
 
 #include "compiler/lower/plant.h"
+#include "compiler/lower/plant_sums.h"
 #include "compiler/support/control.h"
 #include "runtime/plants/plant_tree.h"
 
 namespace graftal {
-
-/// Sums over organs, in units of the model. Wood is segments, leaves are blades (is_blade()).
-struct PlantSums {
-    std::uint64_t modules = 0;  ///< of the word
-    std::uint64_t segments = 0; ///< with a length
-    std::uint64_t leaves = 0;
-    double length = 0;                     ///< of segments
-    double wood_area = 0, wood_volume = 0; ///< of segments, without their ends
-    double leaf_area = 0;                  ///< one side
-
-    PlantSums& operator+=(const PlantSums& other);
-};
-
-struct NamedSums : PlantSums {
-    std::string name;
-};
 
 /// A mean over numbers that come one after the other, and their standard deviation (Welford 1962).
 class RunningMean {

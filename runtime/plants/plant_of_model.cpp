@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/lsys/as_drawn.h"
 #include "compiler/session/stages.h"
 #include "compiler/support/counter_random.h"
 #include "runtime/render/native_engine.h"
@@ -57,6 +58,17 @@ void warn_of_coinciding(const Plant& plant, Span span, Diagnostics& diagnostics)
         .with_hint("give '--exact', by which chance chooses for each part");
 }
 
+PlantOrTotals told_of_model(Session& session, StageOptions& stages, LowerOptions::InPlace wanted,
+                            std::string_view else_error, Compilation& compilation) {
+    stages.lower.in_place = wanted;
+    stages.lower.may_be_orbit = true;
+    const std::shared_ptr<const LoweredModel> lowered = session.lowered(stages, compilation);
+    if (!lowered || !compilation.status.ok() || compilation.diagnostics.has_errors()) return {};
+    if (!lowered->notes.plant && !lowered->notes.totals)
+        compilation.diagnostics.error(Span(), std::string(else_error));
+    return {lowered->notes.plant, lowered->notes.totals};
+}
+
 std::optional<PlantLight> traced_light(PictureSession& session, const RenderOptions& options,
                                        const Plant& plant, const PlantLightOptions& asked,
                                        Compilation& compilation) {
@@ -100,12 +112,20 @@ std::optional<PlantLight> traced_light(PictureSession& session, const RenderOpti
 
 std::shared_ptr<const Plant> plant_of_model(Session& session, StageOptions stages,
                                             std::string_view else_error, Compilation& compilation) {
-    stages.lower.in_place = LowerOptions::InPlace::plant;
-    stages.lower.may_be_orbit = true;
-    const std::shared_ptr<const LoweredModel> lowered = session.lowered(stages, compilation);
-    if (!lowered || !compilation.status.ok() || compilation.diagnostics.has_errors()) return nullptr;
-    if (!lowered->notes.plant) compilation.diagnostics.error(Span(), std::string(else_error));
-    return lowered->notes.plant;
+    return told_of_model(session, stages, LowerOptions::InPlace::plant, else_error, compilation).plant;
+}
+
+PlantOrTotals plant_or_totals_of_model(Session& session, StageOptions stages, std::string_view else_error,
+                                       Compilation& compilation) {
+    Compilation of_rows = compilation, of_totals = compilation;
+    const auto most_rows = std::min(most_told_modules, stages.lower.max_modules);
+    PlantOrTotals told = told_of_model(session, stages, LowerOptions::InPlace::plant, else_error, of_rows);
+    if (!told.plant && of_rows.diagnostics.has_errors())
+        told = told_of_model(session, stages, LowerOptions::InPlace::totals, else_error, of_totals);
+    const bool too_many = told.totals && told.totals->all.modules > most_rows;
+    if (!too_many) told.totals = nullptr;
+    compilation = std::move(too_many ? of_totals : of_rows);
+    return told;
 }
 
 std::optional<PlantMeasures> measures_of_model(const Session& session, const StageOptions& stages,

@@ -7,17 +7,6 @@
 
 namespace graftal {
 
-/// Whether the module is drawn as a segment that has a length.
-inline bool is_segment(const PlantModule& module) {
-    return module.organ == Organ::segment && module.length > 0;
-}
-
-/// Whether the module is drawn as a blade: a polygon, a disc, or a flat model (lsys/turtle/flat_model.h).
-inline bool is_blade(const PlantModule& module) {
-    return module.organ == Organ::polygon || module.organ == Organ::disc ||
-           (module.organ == Organ::model && module.is_measured);
-}
-
 /// The tree of a plant's segments. All vectors have an entry for each module of the plant.
 struct PlantTree {
     /// The segment that bears the module, or that it follows; PlantModule::none: it stands at the root.

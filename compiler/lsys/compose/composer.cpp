@@ -248,13 +248,26 @@ bool LsysComposer::advance(Task& task) {
         found.state.birth = birth;
         if (unfolded.kind == RuleKind::interpret && !begins_interpretation(task, module, absolute, birth))
             return false;
-        const TurtlePart* part = witness_ ? nullptr : parts_.find(found.module, stage, found.state);
+        const TurtlePart* part = known_part(found.module, stage, found.state);
         if (!part) return start_task(found, stage, unfolded);
         if (stage > 0) ++served_;
-        task.turtle.append(*part, task.span, found.placing);
+        append(task, *part, found.placing, unfolded.kind == RuleKind::interpret);
         if (!task.turtle.within_limits(task.span)) return false;
     }
     return true;
+}
+
+/// The part where it is composed already; null if it is not, or if a witness hears of each place.
+const TurtlePart* LsysComposer::known_part(ModuleId module, Stage stage, const TurtleState& state) const {
+    return witness_ && !sums_ ? nullptr : parts_.find(module, stage, state);
+}
+
+/// Places a part, of which a witness has heard, or hears now.
+void LsysComposer::append(Task& parent, const TurtlePart& part, const Placing& placing, bool interprets) {
+    if (witness_) witness_->enter(parent.frame);
+    if (sums_) witness_->places(part.sums, placing.scale * parent.turtle.scale());
+    parent.turtle.append(part, parent.span, placing);
+    if (witness_ && interprets && !parent.interprets) witness_->ends(parent.turtle);
 }
 
 /// False if its part is missing, whose task is then the last.
@@ -266,7 +279,7 @@ bool LsysComposer::draw_piece(Task& task, ModuleId piece) {
     TurtleState state = state_of(task.turtle, snap);
     if (is_branch) task.turtle.close_branch();
     state.variant = variants_.child(task.start.variant, task.module, 0, task.at);
-    if (const TurtlePart* part = witness_ ? nullptr : parts_.find(piece, 0, state)) {
+    if (const TurtlePart* part = known_part(piece, 0, state)) {
         place_piece(task.turtle, piece, *part, task.span, snap);
         return true;
     }
@@ -360,7 +373,7 @@ bool LsysComposer::has_room(Span span) {
 
 /// The frame of a part that begins where the last task is.
 PartFrame LsysComposer::frame_of_child(const Placing& placing) const {
-    if (!witness_) return {};
+    if (!witness_ || sums_) return {};
     const Turtle& turtle = tasks_.back().turtle;
     return tasks_.back().frame.of_child(turtle.start_from_turtle(), placing.scale * turtle.scale());
 }
@@ -375,6 +388,7 @@ bool LsysComposer::start_task(const Lookup& found, Stage stage, const Unfolded& 
         return refuse_endless(rewriter_.grammar(), stage == 0 ? RuleKind::interpret : RuleKind::decompose,
                               rewriter_.modules().symbol(module), span, context_.diagnostics);
     if (!has_room(span)) return false;
+    if (sums_) witness_->opens_part();
     const bool interprets = unfolded.kind == RuleKind::interpret;
     const bool as_old = interprets || unfolded.by->rule->keeps;
     tasks_.push_back({.module = module,
@@ -411,10 +425,10 @@ void LsysComposer::complete_task() {
     if (witness_) {
         Task& parent = tasks_.back();
         rewriter_.work_of_part(new_polygon_work());
-        witness_->enter(parent.frame);
-        parent.turtle.append(part, parent.span, task.placing);
-        if (task.interprets && !parent.interprets) witness_->ends(parent.turtle);
+        if (sums_) part.sums = witness_->closes_part();
+        append(parent, part, task.placing, task.interprets);
         ++parent.at;
+        if (sums_) parts_.add(task.module, task.stage, task.start, std::move(part));
         return;
     }
     if (task.interprets) part.modules = 1;

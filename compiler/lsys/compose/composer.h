@@ -71,8 +71,12 @@ class LsysComposer {
                                            double share = 0);
 
     /// From now on the witness, which must outlive this, hears of the whole word: each part is composed again
-    /// wherever it stands, by the choices of chance that it is composed by once. O(modules of the word).
-    void tell(WordWitness& witness) { witness_ = &witness; }
+    /// wherever it stands, by the choices of chance that it is composed by once. O(modules of the word); with
+    /// a witness that sums up, O(parts).
+    void tell(WordWitness& witness) {
+        witness_ = &witness;
+        sums_ = witness.sums();
+    }
 
     std::size_t part_count() const { return parts_.size(); }
     /// Whether most of them were placed once only.
@@ -152,6 +156,8 @@ class LsysComposer {
     double stepped(double size, double& error);
     std::vector<double> parameters_of(ModuleId module) const;
     bool has_room(Span span);
+    const TurtlePart* known_part(ModuleId module, Stage stage, const TurtleState& state) const;
+    void append(Task& parent, const TurtlePart& part, const Placing& placing, bool interprets);
     bool start_task(const Lookup& found, Stage stage, const Unfolded& unfolded);
     PartFrame frame_of_child(const Placing& placing) const;
     std::optional<Instance> line_for(const TurtlePart& part, const Task& task);
@@ -187,6 +193,7 @@ class LsysComposer {
     std::size_t polygon_work_ = 0;   ///< that is counted
     const FoldedWord* word_ = nullptr;
     WordWitness* witness_ = nullptr;
+    bool sums_ = false; ///< so does the witness
     std::vector<Task> tasks_;
     PartTable parts_;
     std::unordered_map<ObjectId, Origin> origins_;

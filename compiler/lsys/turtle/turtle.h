@@ -75,7 +75,8 @@ struct TurtlePart {
     LengthTally lengths;         ///< of the segments, if TurtleContext::tallies
     BigCount modules = 0;
     BigCount segments = 0;
-    BigCount bodies = 0; ///< spheres, discs, models and polygons
+    BigCount bodies = 0;    ///< spheres, discs, models and polygons
+    std::uint32_t sums = 0; ///< the number that a witness gave it (WordWitness::sums())
 
     std::size_t limb_node_count() const {
         std::size_t count = 0;

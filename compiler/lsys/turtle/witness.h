@@ -72,6 +72,15 @@ class WordWitness {
     virtual void opens_branch() {}
     virtual void closes_branch() {}
 
+    /// Whether each part is told once only, in its own frame, and then by its number wherever it stands: all
+    /// between opens_part() and closes_part() is of the part.
+    virtual bool sums() const { return false; }
+    virtual void opens_part() {}
+    /// The number of the part that ends.
+    virtual std::uint32_t closes_part() { return 0; }
+    /// The part stands here, so many times as large.
+    virtual void places(std::uint32_t /*part*/, double /*scale*/) {}
+
   protected:
     PartFrame frame_;
 };

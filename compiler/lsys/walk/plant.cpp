@@ -5,35 +5,16 @@
 
 #include "compiler/lsys/derive/word.h"
 #include "compiler/lsys/turtle/flat_model.h"
+#include "compiler/lsys/walk/plant_tally.h"
 #include "compiler/support/stretch.h"
 
 namespace graftal {
-
-namespace {
-
-/// Whether a module is a part of the plant where others are drawn in its place.
-bool is_part(TurtleCommand command) {
-    switch (command) {
-    case TurtleCommand::none:
-    case TurtleCommand::draw:
-    case TurtleCommand::draw_always:
-    case TurtleCommand::draw_unrecorded:
-    case TurtleCommand::sphere:
-    case TurtleCommand::disc:
-    case TurtleCommand::model:
-        return true;
-    default:
-        return false;
-    }
-}
-
-} // namespace
 
 bool PlantBuilder::begins(const Module& module, const Turtle& turtle) {
     if (!has_room()) return false;
     age_ = module.birth == ModuleTable::no_birth ? -1 : plant_.steps - module.birth;
     const TurtleCommand command = grammar_.commands[module.symbol];
-    if (!(module.is_interpreted ? is_part(command) : command == TurtleCommand::none)) return true;
+    if (!(module.is_interpreted ? is_plant_part(command) : command == TurtleCommand::none)) return true;
     const Axis before = axis_;
     add(row(module.symbol, module.parameters, turtle));
     if (!module.is_interpreted) return true;

@@ -36,8 +36,11 @@ int run_plant_stats(const Options& options) {
     session.set_control(watched(interruption, bar));
     RenderOptions render = options.render;
     render.compile = inspecting(options, true);
-    const std::shared_ptr<const Plant> plant = plant_of_model(
-        session, render.compile, "only L-systems have a plant that can be measured", compilation);
+    const char* const else_error = "only L-systems have a plant that can be measured";
+    const auto [plant, totals] =
+        options.irradiance
+            ? PlantOrTotals{plant_of_model(session, render.compile, else_error, compilation), nullptr}
+            : plant_or_totals_of_model(session, render.compile, else_error, compilation);
     std::optional<PlantMeasures> measures;
     if (plant)
         measures = measures_of_model(session, render.compile, *plant, options.ground_area, compilation);
@@ -46,7 +49,11 @@ int run_plant_stats(const Options& options) {
         light = light_of_model(session, render, *plant, light_options(options), compilation);
     bar.clear();
     const int status = conclude(options, compilation, interruption.signal());
-    if (!measures || status != exit_done) return status;
+    if (status != exit_done) return status;
+    if (totals)
+        return print_output(options.json ? totals_json(path, *totals, options.ground_area)
+                                         : totals_text(path, *totals, options.ground_area));
+    if (!measures) return status;
     const PlantLight* const lit = light ? &*light : nullptr;
     return print_output(options.json ? measures_json(path, *measures, lit)
                                      : measures_text(path, *measures, lit));

@@ -1,7 +1,10 @@
 #include "runtime/export/export_animation.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -24,6 +27,13 @@ struct State {
     std::size_t first = 0, end = 0;
     std::string file; ///< beside NAME.usda
 };
+
+/// Whether both files can be read and hold the same bytes.
+bool are_equal(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::ifstream left(a, std::ios::binary), right(b, std::ios::binary);
+    using Bytes = std::istreambuf_iterator<char>;
+    return left && right && std::equal(Bytes(left), Bytes(), Bytes(right), Bytes());
+}
 
 /// Writes what shows them one after the other. Frames count from 1 here.
 Status write_frames(const AnimateOptions& animate, const std::vector<State>& states, const View& view,
@@ -131,6 +141,12 @@ AnimationOutcome export_animation(PictureSession& session, const AnimateOptions&
             return outcome;
         }
         if (animate.on_compiled) animate.on_compiled(compilation);
+        // Where it reads what moves, a model may still show the same.
+        if (!states.empty() && are_equal(state.file.output, folder.parent_path() / states.back().file)) {
+            fs::remove(state.file.output, error);
+            ++states.back().end;
+            continue;
+        }
         states.push_back({frame, frame + 1, (folder.filename() / name).generic_string()});
         ++outcome.drawn;
     }

@@ -173,7 +173,8 @@ std::optional<std::string> json(const WrittenPlant& table, std::uint64_t most_by
         if (text.size() > most_bytes) return std::nullopt;
         text += row.dump(-1, ' ', false, Json::error_handler_t::replace);
     }
-    return text + "\n ]\n}\n";
+    text += "\n ]\n}\n";
+    return text;
 }
 
 /// Modules of the word are vertices; their numbers are sums over what is drawn in their place.

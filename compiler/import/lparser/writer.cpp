@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -72,7 +73,7 @@ class LparserWriter {
         for (LSystemString* const string : strings)
             for (LSystemModule& module : *string) {
                 take_number(module);
-                used_.insert(module.symbol[0]);
+                if (used_.insert(module.symbol[0]).second) warn_of_no_meaning(module);
                 if (module.has_parentheses) numbered_.insert(module.symbol[0]);
             }
         // A number behind a symbol stays behind the last symbol of its successor.
@@ -86,6 +87,15 @@ class LparserWriter {
             }
         }
         find_plain();
+    }
+
+    /// Letters may be states of the rules; a sign without a rule is meant to be a command.
+    void warn_of_no_meaning(const LSystemModule& module) {
+        const char sign = module.symbol[0];
+        if (std::isalnum(static_cast<unsigned char>(sign)) || lparser_command(sign) || has_rule(sign)) return;
+        file_.diagnostics
+            .warning(module.span, fmt::format("'{}' means nothing to the L-Parser, and draws nothing", sign))
+            .with_hint("its turtle rolls by '<' and '>'");
     }
 
     /// The program rewrites the digits of numbers too.

@@ -103,6 +103,13 @@ void Turtle::append_limbs(const TurtlePart& part, double scale, Span span) {
         return LimbNode{start_from_turtle_(scale * node.place), scale * node.radius};
     };
     const Limb& entry = part.limbs.front();
+    // A limb that would be too long leaves the part's whole: parts are composed from the tips on, and each
+    // would leave a limb of one segment behind.
+    if (limb_.nodes.size() + entry.nodes.size() > most_limb_points + 1) {
+        const LimbNode last = limb_.nodes.back();
+        end_limb();
+        stand_on(last);
+    }
     for (std::size_t i = 1; i < entry.nodes.size(); ++i)
         extend_limb(placed(entry.nodes[i - 1]), placed(entry.nodes[i]), entry.colour, span);
     if (part.limbs.size() == 1) return;

@@ -71,5 +71,12 @@ TEST(ExportedAnimation, HasEachStateOnce) {
     EXPECT_EQ(states(plant, false), (std::vector<std::size_t>{1, 4, 7, 10})); // steps that are done by then
 }
 
+/// The drawing reads the age and shows the same until it is over 2.
+TEST(ExportedAnimation, HasAStateOnceThatTheModelComesToInTwoWays) {
+    const std::string plant =
+        "lsys m {\n axiom F(1)\n F(l) -> F(l)\n interpret F(l) -> @O(0.1 + max(step, 2)/8)\n}\n";
+    EXPECT_EQ(states(plant, false), (std::vector<std::size_t>{1, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
+}
+
 } // namespace
 } // namespace graftal

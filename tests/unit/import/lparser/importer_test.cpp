@@ -8,6 +8,7 @@ namespace graftal::testing {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// The ends of the segments of an axiom, per length of F.
 std::vector<Vec3> ends(const std::string& axiom) {
@@ -101,6 +102,13 @@ TEST(Lparser, NumbersThatAreNoneAreNone) {
     ASSERT_TRUE(model.graph) << model.said();
     EXPECT_THAT(model.said(), HasSubstr("a.ls:4:6: warning: 'x' is read as the number 0"));
     EXPECT_THAT(model.translation, HasSubstr("  A(x) -> F(0)\n"));
+}
+
+TEST(Lparser, SignsWithoutAMeaningAreSaid) {
+    const Imported model("a.ls", "1\n90\n10\nA\nA=F/F*B\n*=F\n@\n");
+    EXPECT_THAT(model.said(), HasSubstr("a.ls:5:4: warning: '/' means nothing to the L-Parser"));
+    EXPECT_THAT(model.said(), Not(HasSubstr("'*'"))) << "it has a rule";
+    EXPECT_THAT(model.said(), Not(HasSubstr("'B'"))) << "a letter may be a state";
 }
 
 TEST(Lparser, SymbolsWithNamesAreToldFromLetters) {

@@ -122,6 +122,18 @@ TEST(Skin, GapsColoursAndBranchesBeginLimbs) {
     EXPECT_EQ(count(std::string(300, 'F')), 2u);
 }
 
+/// Parts of a chain are composed from its tip on; none may leave single segments behind.
+TEST(Skin, LongChainsOfPartsAreFewLimbs) {
+    const auto limbs = [](unsigned steps, const std::string& rule) {
+        const CompiledLsys model("skin 0.1\nwidth 0.1\naxiom A\nA -> " + rule, steps);
+        return skins_of(model.graph).size();
+    };
+    EXPECT_EQ(limbs(299, "FA"), 1u);
+    EXPECT_EQ(limbs(300, "FA"), 2u);
+    EXPECT_EQ(limbs(650, "FA"), 3u);
+    EXPECT_EQ(limbs(650, "AF"), 3u);
+}
+
 /// A branch has a collar where it leaves a limb, and a flat end where it leaves nothing.
 TEST(Skin, CollarsAreSunkInTheLimbThatBearsThem) {
     const auto branch_of = [](const std::string& axiom) {

@@ -424,6 +424,9 @@ class GltfWriter {
     }
 
     int texture_of(MaterialId material) {
+        const auto [known, is_new] =
+            textures_.try_emplace(scene_.materials[material].texture, static_cast<int>(model_.textures.size()));
+        if (!is_new) return known->second;
         tinygltf::Image image;
         image.name = PictureCopies::stem(scene_.materials[material]);
         image.mimeType = "image/png";
@@ -432,7 +435,7 @@ class GltfWriter {
         tinygltf::Texture texture;
         texture.source = static_cast<int>(model_.images.size()) - 1;
         model_.textures.push_back(texture);
-        return static_cast<int>(model_.textures.size()) - 1;
+        return known->second;
     }
 
     int add_top(tinygltf::Node node, const Affine& place_of) {
@@ -505,6 +508,7 @@ class GltfWriter {
     std::vector<bool> held_; ///< until the meshes are grouped
     ShapeMeshes meshes_;
     PictureCopies pictures_;
+    std::map<std::string, int> textures_; ///< by the model's name of the picture
     tinygltf::Model model_;
     MeshGroups groups_;
     std::vector<int> top_; ///< nodes of the scene

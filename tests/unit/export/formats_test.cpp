@@ -437,6 +437,19 @@ TEST(Formats, KeepThePlacesOfSkinsWithoutAPicture) {
     EXPECT_EQ(count_of("\"TEXCOORD_0\""), 1u);
 }
 
+TEST(Formats, HoldAPictureOfTwoMaterialsOnce) {
+    Exporting exporting("m.inst", "material a { texture: \"bark.png\" }\n"
+                                  "material b { texture: \"bark.png\"  specular: 0.5 }\n"
+                                  "object m {\n torus material: a\n sphere material: b\n}\n");
+    write_bark(exporting);
+    ASSERT_TRUE(exporting.to("m.gltf")) << exporting.said();
+    const std::string gltf = exporting.read("m.gltf");
+    const std::size_t first = gltf.find("image/png");
+    EXPECT_NE(first, std::string::npos);
+    EXPECT_EQ(gltf.find("image/png", first + 1), std::string::npos);
+    EXPECT_NE(gltf.find("\"name\": \"b\""), std::string::npos);
+}
+
 /// A limit below three corners for each triangle holds the file all the same.
 TEST(FlatFiles, AreNotRefusedForVerticesThatAreShared) {
     Exporting exporting("m.inst",

@@ -139,19 +139,22 @@ Pointer::Place Pointer::current() const {
     return {state_.at, state_.zoom, state_.camera, state_.stages.view.camera};
 }
 
-nlohmann::json Pointer::zoom(double x, double y, double factor) {
+nlohmann::json Pointer::zoom(const Grip& grip) {
     constexpr double same_px = 1.5, same_factor = 1e-9;
+    const auto is_undone = [&](const Grip& before) {
+        return std::hypot(before.x + before.dx - grip.x, before.y + before.dy - grip.y) < same_px &&
+               std::hypot(before.dx + grip.dx, before.dy + grip.dy) < same_px &&
+               std::abs(before.factor * grip.factor - 1) < same_factor;
+    };
     const Place from = current();
     Place to;
-    const auto back = std::find_if(steps_.rbegin(), steps_.rend(), [&](const Step& step) {
-        return step.to == from && std::hypot(step.x - x, step.y - y) < same_px &&
-               std::abs(step.factor * factor - 1) < same_factor;
-    });
+    const auto back = std::find_if(steps_.rbegin(), steps_.rend(),
+                                   [&](const Step& step) { return step.to == from && is_undone(step.grip); });
     if (back != steps_.rend()) {
         to = back->from;
     } else {
-        to = nearer(*needed_view(), x, y, factor);
-        steps_.push_back({from, to, x, y, factor});
+        to = nearer(*needed_view(), grip);
+        steps_.push_back({from, to, grip});
         if (steps_.size() > most_remembered) steps_.pop_front();
     }
     return {{"at", to.at.empty() ? nlohmann::json() : nlohmann::json(to.at)},
@@ -177,7 +180,7 @@ Camera Pointer::dollied(const Camera& camera, Vec3 point, double factor) {
     return nearer;
 }
 
-Pointer::Place Pointer::nearer(const ViewedModel& viewed, double x, double y, double factor) {
+Pointer::Place Pointer::nearer(const ViewedModel& viewed, const Grip& grip) {
     const Camera& camera = viewed.view.camera;
     StageOptions named = state_.stages;
     named.stop_after = last_named_pass;
@@ -188,20 +191,22 @@ Pointer::Place Pointer::nearer(const ViewedModel& viewed, double x, double y, do
     const bool is_zoomed = state_.stages.view.zoom.zoom.has_value();
     const Magnification zoom = is_zoomed ? *state_.stages.view.zoom.zoom : Magnification();
 
-    const std::optional<MetPart> met = part_near(viewed, x, y);
+    const std::optional<MetPart> met = part_near(viewed, grip.x, grip.y);
     const Vec3 middle = is_zoomed || bounds.box.empty() ? Vec3(0.0) : bounds.box.centre();
     double depth = glm::dot((met ? met->point : middle) - camera.location, camera.direction);
     if (!(depth > 0)) depth = radius;
     // The part may lie beside the pixel: the point is the pixel's.
-    const Ray ray = CameraRays(viewed.view).through(x, y);
+    const Ray ray = CameraRays(viewed.view).through(grip.x, grip.y);
     const double before = glm::dot(ray.origin - camera.location, camera.direction);
     const Vec3 point = ray((depth - before) / glm::dot(ray.direction, camera.direction));
-    const Camera nearer = dollied(camera, point, factor);
-    const double distance = camera.orthographic ? depth : depth / factor;
+    Camera nearer = dollied(camera, point, grip.factor);
+    const double distance = camera.orthographic ? depth : depth / grip.factor;
+    const double unit_of_px = width_at(nearer, distance) / viewed.view.size.width;
+    nearer.location -= unit_of_px * (grip.dx * camera.right - grip.dy * camera.up);
     const double enlarged = zoom.times(radius) / width_at(nearer, distance);
 
     if (is_zoomed) {
-        if (!(enlarged < least_rooted)) return rooted(viewed, met, nearer, distance, zoom, factor);
+        if (!(enlarged < least_rooted)) return rooted(viewed, met, nearer, distance, zoom, grip.factor);
         const double smaller = 1 / zoom.times(1);
         Camera own = nearer;
         own.location = focus_in_world(*whole) + smaller * nearer.location;

@@ -30,11 +30,17 @@ class Pointer {
     /// The answer to `pick`; an empty object for the background. Throws BadMessage.
     nlohmann::json pick(double x, double y);
 
-    /// The answer to `zoom`: a view in which the point under the pixel stays, `factor` times as large. A step
-    /// back at the same pixel leads to the very view that the step came from. Near the whole, the camera
-    /// moves; beyond, the graph gets a new root, so that no depth is the last. Requires a positive factor.
-    /// Throws BadMessage.
-    nlohmann::json zoom(double x, double y, double factor);
+    /// The point under the pixel (x, y) comes to another one, and is enlarged.
+    struct Grip {
+        double x = 0, y = 0;
+        double dx = 0, dy = 0;
+        double factor = 1;
+    };
+
+    /// The answer to `zoom`: a view in which the grip has done so. A step back from the pixel where it ended
+    /// leads to the very view that the step came from. Near the whole, the camera moves; beyond, the graph
+    /// gets a new root, so that no depth is the last. Requires a positive factor. Throws BadMessage.
+    nlohmann::json zoom(const Grip& grip);
 
   private:
     /// A view of a state.
@@ -48,7 +54,7 @@ class Pointer {
     };
     struct Step {
         Place from, to;
-        double x = 0, y = 0, factor = 1;
+        Grip grip;
     };
 
     /// Null, with the reason in `problem`.
@@ -60,7 +66,7 @@ class Pointer {
     Place current() const;
     static Place placed(std::string at, std::string zoom, nlohmann::json camera);
     static Camera dollied(const Camera& camera, Vec3 point, double factor);
-    Place nearer(const ViewedModel& viewed, double x, double y, double factor);
+    Place nearer(const ViewedModel& viewed, const Grip& grip);
     Vec3 focus_in_world(const AnalysedModel& whole) const;
     Place rooted(const ViewedModel& viewed, const std::optional<MetPart>& met, Camera camera, double distance,
                  const Magnification& zoom, double scale);

@@ -40,6 +40,12 @@ struct FileJob {
     std::map<std::string, std::string> files{}; ///< StudioState::files, of which none leads out of the root
 };
 
+/// The part of a job that is done: each stage goes from 0 to 1.
+struct FileShare {
+    std::string stage; ///< "measure", "draw" or "assemble"
+    double share = 0;
+};
+
 /// The file of a job, or why there is none.
 struct FileResult {
     std::string error;
@@ -74,7 +80,7 @@ class StudioHome {
     /// Reads the textures of the materials and the ground.
     virtual Status load_textures(const Graph&, const View&, ModelTextures&) { return {}; }
 
-    using OnShare = std::function<void(double share)>;
+    using OnShare = std::function<void(const FileShare& share)>;
     using OnResult = std::function<void(FileResult result)>;
     /// Makes a file beside the session's work, and calls the functions at any time, by any thread; the last
     /// once.

@@ -1,6 +1,7 @@
 #include "runtime/studio/studio_session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <new>
 #include <utility>
@@ -40,6 +41,12 @@ nlohmann::json parsed(std::string_view message) {
 
 nlohmann::json fault_message(const std::string& text) {
     return {{"type", "fault"}, {"text", text}};
+}
+
+/// Shares are told by thousandths, so that the end of each stage is, too.
+bool is_news(const FileShare& share, const FileShare& told) {
+    constexpr double steps = 1000;
+    return share.stage != told.stage || std::floor(steps * share.share) > std::floor(steps * told.share);
 }
 
 /// Work for the rays of a thumbnail, and for the model that they go through, whatever it took to prepare
@@ -458,7 +465,7 @@ void StudioSession::start_file(const Ask& ask) {
     try {
         home_.make_file(
             std::move(job), CancelFlag([this] { return stopped_ || file_stopped_; }),
-            [note](double share) { note([&](Writing& writing) { writing.share = share; }); },
+            [note](const FileShare& share) { note([&](Writing& writing) { writing.share = share; }); },
             [note](FileResult result) {
                 note([&](Writing& writing) { writing.result = std::move(result); });
             });
@@ -473,13 +480,15 @@ void StudioSession::tell_of_file() {
     std::optional<Writing> writing;
     {
         const std::lock_guard lock(inbox_);
-        constexpr double noticed = 0.01;
-        if (!writing_ || (!writing_->result && writing_->share < writing_->told_share + noticed)) return;
-        writing_->told_share = writing_->share;
+        if (!writing_ || (!writing_->result && !is_news(writing_->share, writing_->told))) return;
+        writing_->told = writing_->share;
         writing = writing_->result ? std::exchange(writing_, std::nullopt) : writing_;
     }
     if (!writing->result) {
-        send({{"type", "progress"}, {"number", writing->id}, {"stage", "write"}, {"share", writing->share}});
+        send({{"type", "progress"},
+              {"number", writing->id},
+              {"stage", writing->share.stage},
+              {"share", writing->share.share}});
         return;
     }
     const FileResult& result = *writing->result;
@@ -527,7 +536,8 @@ nlohmann::json StudioSession::answer(const Ask& ask) {
         const double factor = fields.needed_number("factor");
         if (!(factor >= least_factor && factor <= 1 / least_factor))
             throw BadMessage("'factor' is out of range");
-        return pointer_.zoom(fields.needed_number("x"), fields.needed_number("y"), factor);
+        return pointer_.zoom({fields.needed_number("x"), fields.needed_number("y"),
+                              fields.number("dx").value_or(0), fields.number("dy").value_or(0), factor});
     }
     if (ask.what == "command") {
         const nlohmann::json* const film = fields.object("film");

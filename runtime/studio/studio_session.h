@@ -81,7 +81,7 @@ class StudioSession {
     /// A file that is made, or was.
     struct Writing {
         std::uint32_t id = 0;
-        double share = 0, told_share = -1;
+        FileShare share, told;
         std::optional<FileResult> result;
     };
 

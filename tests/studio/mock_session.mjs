@@ -24,7 +24,8 @@ rifs fern {
 /** Serves `folder` and the session; gives its address and what the page told. With `told.delay_ms`, states are answered so late; with
  * `told.passes` 1, their pictures stay rough; with `told.whole_seconds`, the work ends them sooner, but for the best; with `told.silent`,
  * nothing is varied, and else so many as `told.children`, with `told.later` as soon as `told.vary` is called; with `told.slow`,
- * `told.film` says when a film is done. After `told.drag_ms` drags are answered. A text that says `fits` is framed anew as the map left moves. */
+ * `told.film` says when a film is done. After `told.drag_ms` drags are answered, after `told.pick_ms` picks, with `told.point`; null: with nothing.
+ * A text that says `fits` is framed anew as the map left moves. */
 export async function serve(folder, modules, { name = 'fern.rifs', text = example } = {}, begun = {}) {
   const { WebSocketServer } = createRequire(path.join(modules, 'x'))('ws');
   const server = http.createServer((request, response) => {
@@ -126,10 +127,12 @@ class MockSession {
         return answer({ edits: [...state.text.matchAll(/map (\w+) +\{/g)].map((m) => ({ from: m.index, to: m.index + m[0].length, text: `map ${m[1]} {` })) });
       case 'pick': {
         const map = maps[1];
-        return answer({
-          point: [0, 5, 0], normal: [0, 0, 1], address: 'frond.left', object: 'fern', from: map.from, to: map.to,
+        if (this.told.point === null) return answer({});
+        const picked = {
+          point: this.told.point ?? [0, 5, 0], normal: [0, 0, 1], address: 'frond.left', object: 'fern', from: map.from, to: map.to,
           ...(state.name.endsWith('.lsys') ? { path: ['A_9', 'A_8_2', 'I_1'], part: [0, 1, 2] } : { path: ['frond', 'left'], part: [1, 2] }),
-        });
+        };
+        return void setTimeout(() => answer(picked), this.told.pick_ms ?? 0);
       }
       case 'zoom': {
         const zoom = Number(state.zoom ?? 1) * fields.factor;
@@ -172,7 +175,7 @@ class MockSession {
         return answer({});
       case 'write': {
         if (fields.film) {
-          this.told.film = { progress: (share) => this.send({ type: 'progress', number: id, stage: 'write', share }), done: () => answer({ path: `film${fields.suffix}` }) };
+          this.told.film = { progress: (stage, share) => this.send({ type: 'progress', number: id, stage, share }), done: () => answer({ path: `film${fields.suffix}` }) };
           return this.told.slow ? undefined : this.told.film.done();
         }
         if (fields.path) return answer({ path: fields.path });

@@ -434,6 +434,37 @@ test('orbit, pan, dolly; by mouse and by keys; undo them all', async (hand, page
   assert.ok(await page.isDisabled('#undo'));
 }, { opened: { name: 'solid.rifs', text: solid } });
 
+test('near by, one turns about the surface in the middle', async (hand, page, session) => {
+  const [x, y] = await hand.place_of('#view'), picks = () => hand.asked('pick').length;
+  const near = (camera, wanted) => wanted.forEach((number, i) => assert.ok(Math.abs(camera[i] - number) < 2e-3, `${camera} is not ${wanted}`));
+  await hand.changes(() => hand.drag([x, y], 50, 0));
+  assert.deepEqual([picks(), hand.last().camera.look_at], [0, [0, 0, 0]], 'the whole turns about its middle');
+  const before = { location: [0, 0, 2], look_at: [0, 0, 0], up: [0, 1, 0], angle_deg: 45 };
+  await page.evaluate((camera) => window.studio.change({ camera }), before);
+  await hand.settled();
+  Object.assign(session.told, { point: [0.3, 0, 1], pick_ms: 200 });
+  await hand.changes(() => hand.drag([x, y], 100, 0));
+  near(hand.last().camera.look_at, [0, 0, 1]);
+  near(hand.last().camera.location, [-Math.sin(0.8), 0, 1 + Math.cos(0.8)]);
+  assert.equal(picks(), 1, 'a drag looks once');
+  await page.keyboard.press('Control+z');
+  await hand.settled();
+  assert.deepEqual(hand.last().camera, before, 'a late answer is of the same step');
+  await page.focus('#view');
+  await hand.changes(async () => {
+    for (let i = 0; i < 4; ++i) await page.keyboard.press('ArrowLeft');
+  });
+  await hand.until(() => Math.abs(hand.last().camera.location[0] - Math.sin(0.4)) < 2e-3, 'no turn is lost');
+  assert.equal(picks(), 2);
+  await page.keyboard.press('0');
+  await page.evaluate((camera) => window.studio.change({ camera }), before);
+  await hand.settled();
+  session.told.point = null;
+  await hand.changes(() => hand.drag([x, y], 100, 0));
+  near(hand.last().camera.location, [-2 * Math.sin(0.8), 0, 2 * Math.cos(0.8)]);
+  assert.deepEqual([picks(), hand.last().camera.look_at], [3, [0, 0, 0]], 'nothing is there: the old pivot');
+}, { opened: { name: 'solid.rifs', text: solid } });
+
 test('the wheel zooms without an end, and back', async (hand, page) => {
   const before = await hand.pixels(), [x, y] = await hand.place_of('#view');
   await page.mouse.move(x, y);
@@ -841,15 +872,16 @@ test('a film tells what is done until its file is there', async (hand, page, ses
   await page.click('#tab-time');
   await page.click('#save-film');
   await hand.until(() => session.told.film, 'the film is asked for');
-  session.told.film.progress(0.5);
+  session.told.film.progress('draw', 0.5);
   const doing = () => page.textContent('#panel-time [role=status]'), bar = page.locator('progress');
   await hand.until(async () => (await doing()) === 'Drawing: 62 of 125 pictures are there', 'pictures are counted');
   assert.equal(await bar.getAttribute('value'), '0.5');
-  session.told.film.progress(124 / 125);
-  await hand.until(async () => (await doing()) === 'Drawing the last of the 125 pictures, then writing fern.gif …', 'no other share may come');
-  session.told.film.progress(1);
+  session.told.film.progress('draw', 0.996);
+  await hand.until(async () => (await doing()) === 'Drawing: 124 of 125 pictures are there', 'the bar goes on near its end');
+  assert.equal(await bar.getAttribute('value'), '0.996');
+  session.told.film.progress('assemble', 0.4);
   await hand.until(async () => (await doing()) === 'All 125 pictures are drawn. Writing fern.gif …', 'it writes the file');
-  assert.equal(await bar.getAttribute('value'), null, 'nobody knows how long that takes');
+  assert.equal(await bar.getAttribute('value'), '0.4', 'that has a bar of its own');
   session.told.film.done();
   await hand.until(async () => !(await bar.isVisible()), 'it is there');
   assert.match(await page.textContent('#said'), /^Saved film\.gif/);
@@ -965,7 +997,7 @@ test('a reload finds everything; a link holds the model', async (hand, page, ses
   await hand.until(async () => /no model/.test(await page.textContent('#said')), 'a bad link is told');
 });
 
-test('fingers: one pans a flat model, two zoom, a tap picks', async (hand, page) => {
+test('fingers: one pans a flat model, two pan and zoom, a tap picks', async (hand, page) => {
   const [x, y] = await hand.place_of('#view'), client = await page.context().newCDPSession(page);
   const touch = (type, ...points) => client.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
   await touch('touchStart', [x, y]);
@@ -978,6 +1010,15 @@ test('fingers: one pans a flat model, two zoom, a tap picks', async (hand, page)
   await touch('touchEnd');
   await hand.settled();
   await hand.until(() => Math.abs(Number(hand.last().zoom) - 2) < 0.1, 'two fingers enlarge twice');
+  const sum = (asks, part) => asks.reduce((all, ask) => all + ask[part], 0), apart = hand.asked('zoom').length;
+  assert.ok(Math.abs(sum(hand.asked('zoom'), 'dx')) < 1e-6, 'they went apart');
+  await touch('touchStart', [x - 40, y], [x + 40, y]);
+  for (let i = 1; i <= 5; ++i) await touch('touchMove', [x - 40 + 6 * i, y + 8 * i], [x + 40 + 6 * i, y + 8 * i]);
+  await touch('touchEnd');
+  await hand.settled();
+  const pans = hand.asked('zoom').slice(apart), px = hand.last().width / (await page.locator('#view').boundingBox()).width;
+  assert.ok(Math.abs(sum(pans, 'dx') - 30 * px) < 1e-6 && Math.abs(sum(pans, 'dy') - 40 * px) < 1e-6, JSON.stringify(pans));
+  for (const { factor } of pans) assert.ok(Math.abs(factor - 1) < 1e-9, `${factor}: both fingers are one step`);
   await touch('touchStart', [x, y]);
   await touch('touchEnd');
   await page.waitForSelector('#picked dl');

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """server_test.py PROGRAM: `graftal studio` as pages, strangers and broken clients meet it."""
 
+import math
 import os
 import pathlib
 import random
@@ -168,8 +169,8 @@ class BrokenClients(Served):
                   [0, 0, 1], [1e300, 0, 0], {}, {"spread": 0.3}, {"location": [0, 0, 5]}, CRYSTAL, CRYSTAL[:60],
                   "n.n.(e)*", "../../etc/passwd", ".png", ".usda"]
         fields = ["type", "number", "name", "text", "set", "steps", "time", "seed", "width", "height", "camera", "at",
-                  "zoom", "engine", "quality", "threads", "id", "what", "offset", "x", "y", "factor", "path", "suffix",
-                  "options", "matrix", "from", "to", "value"]
+                  "zoom", "engine", "quality", "threads", "id", "what", "offset", "x", "y", "dx", "dy", "factor",
+                  "path", "suffix", "options", "matrix", "from", "to", "value"]
         asks = ["complete", "hover", "definition", "rename", "format", "pick", "zoom", "map", "pull", "digraph", "vary",
                 "setting", "thumbnail", "command", "nonsense"]
         with self.studio.page() as page:
@@ -313,6 +314,32 @@ class Sessions(Served):
         self.assertEqual(pathlib.Path(self.folder.name, "page.png").read_bytes(), line)
         self.assertEqual(download[0].contents, line)
 
+    def test_two_fingers_take_along_what_is_under_them(self):
+        corners = "".join(f"  map m{i} {{ scale 1/2  translate <{x}/2, {y}/2, 0> }}\n"
+                          for i, (x, y) in enumerate([(-1, -1), (1, -1), (-1, 1), (1, 1)]))
+        board = f"rifs board {{\n{corners}}}\ncamera {{ location <0, 0, 5>  look_at <0, 0, 0>  angle 40 }}\n"
+        state = {**SMALL, "name": "board.rifs", "text": board}
+        with self.studio.page() as page:
+            page.show(**state)
+            page.until(is_done)
+            x, y = 20.5, 17.5
+            held = page.answer(page.ask("pick", x=x, y=y))["point"]
+            for dx, dy, factor in [(6, -4, 1), (-3, 5, 2), (9, 2, 0.8)]:
+                view = page.answer(page.ask("zoom", x=x, y=y, dx=dx, dy=dy, factor=factor))
+                back = page.answer(page.ask("zoom", x=x, y=y, dx=dx, dy=dy, factor=factor))
+                self.assertEqual(view, {**back, "id": view["id"]})
+                before, state = state, {**state, **{field: view[field] for field in ("at", "zoom", "camera")}}
+                page.show(**state)
+                x, y = x + dx, y + dy
+                # The camera looks along -z, with the y axis up.
+                camera = view["camera"]
+                right, up, near = (held[i] - camera["location"][i] for i in range(3))
+                unit_of_px = 2 * -near * math.tan(math.radians(20)) / SMALL["width"]
+                self.assertAlmostEqual(32 + right / unit_of_px, x, 6)
+                self.assertAlmostEqual(18 - up / unit_of_px, y, 6)
+                back = page.answer(page.ask("zoom", x=x, y=y, dx=-dx, dy=-dy, factor=1 / factor))
+                self.assertEqual(back["camera"], before.get("camera"), "the way back leads to the very view")
+
     def test_a_film_is_that_of_the_command_line(self):
         pathlib.Path(self.folder.name, "crystal.rifs").write_text(CRYSTAL)
         film = {"frames": 5, "fps": 10, "steps": [1, 3], "set": {"spread": [[0, 0.5], [0.25, 0.3], [1, 0.4]]}}
@@ -325,8 +352,10 @@ class Sessions(Served):
             asked = page.ask("write", path="film.png", film=film)
             messages = page.until(lambda message: has_type("answer")(message) and message["id"] == asked)
             self.assertEqual(messages[-1].get("path"), "film.png", messages[-1])
-            shares = [message["share"] for message in messages if has_type("progress")(message)]
-            self.assertEqual(shares, sorted(shares))
+            told = [(message["stage"], message["share"]) for message in messages if has_type("progress")(message)]
+            order = ["measure", "draw", "assemble"]
+            self.assertEqual(told, sorted(told, key=lambda one: (order.index(one[0]), one[1])))
+            self.assertLessEqual(max(share for _, share in told), 1)
             self.assertEqual(page.answer(page.ask("write", path="frames/", film=film)).get("path"), "frames/")
             self.assertEqual(page.answer(page.ask("write", path="film.usda", film=film)).get("path"), "film.usda")
             for bad in [{}, {"frames": 2, "set": {"spread": [[0, 1]]}}, {"frames": 2, "steps": 3},

@@ -127,6 +127,18 @@ class JobCommand {
     std::optional<CommandSession> session_;
 };
 
+const char* stage_name(AnimationProgress::Stage stage) {
+    switch (stage) {
+    case AnimationProgress::Stage::measuring:
+        return "measure";
+    case AnimationProgress::Stage::drawing:
+        return "draw";
+    case AnimationProgress::Stage::assembling:
+        return "assemble";
+    }
+    return "";
+}
+
 /// Does what the command line does with the job's words.
 void run_words(const FileJob& job, const std::string& output, const std::string& root,
                const CancelFlag& cancel, const StudioHome::OnShare& on_share, Compilation& compilation) {
@@ -144,10 +156,9 @@ void run_words(const FileJob& job, const std::string& output, const std::string&
     if (options.command->run == run_animate) {
         AnimateOptions animate = animate_options(options);
         animate.on_progress = [&](const AnimationProgress& progress) {
-            const double drawn = static_cast<double>(progress.frame) + progress.fraction.value_or(0);
-            on_share(progress.stage == AnimationProgress::Stage::measuring
-                         ? 0
-                         : drawn / static_cast<double>(std::max<std::size_t>(progress.frames, 1)));
+            const double done = static_cast<double>(progress.frame) + progress.fraction.value_or(0);
+            on_share({stage_name(progress.stage),
+                      done / static_cast<double>(std::max<std::size_t>(progress.frames, 1))});
         };
         AnimationOutcome outcome = animation_kind(output) == AnimationKind::usd
                                        ? export_animation(session, animate, export_options(options))
@@ -158,7 +169,7 @@ void run_words(const FileJob& job, const std::string& output, const std::string&
         return;
     }
     options.render.on_progress = [&](const DrawProgress& progress) {
-        on_share(progress.fraction.value_or(0));
+        on_share({stage_name(AnimationProgress::Stage::drawing), progress.fraction.value_or(0)});
     };
     if (options.engine->compile(session, options.render.compile, compilation))
         options.engine->draw(session, options.render, compilation);

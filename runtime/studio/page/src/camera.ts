@@ -15,6 +15,11 @@ export function orbited(camera: Camera, right_rad: number, up_rad: number): Came
   return { ...camera, location: add(camera.look_at, arm) };
 }
 
+/** The same view, which looks at what is so far off. */
+export function aimed(camera: Camera, distance: number): Camera {
+  return { ...camera, look_at: add(camera.location, times(view_of(camera).into, distance)) };
+}
+
 /** Sideways, so that what lies at the point it looks at follows the pointer. */
 export function panned(camera: Camera, dx_px: number, dy_px: number, width_px: number): Camera {
   const view = view_of(camera), unit_of_px = units_of_pixel(camera, width_px);

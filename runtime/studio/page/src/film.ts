@@ -1,12 +1,9 @@
 // Key frames of the knobs, and the film that runs through them: by the code of `graftal animate`.
 import { element, plain_number, soon } from './dom';
-import type { KeyFrame } from './protocol';
+import type { KeyFrame, Progress } from './protocol';
 import type { Studio } from './studio';
 
 type Values = Record<string, number>;
-
-/** The session tells shares of a file by hundredths: after this one, it may tell no other before the file is there. */
-export const nearly_whole = 0.99;
 
 /** The values of the knobs at a time, straight from key to key; before the first and after the last they stay. */
 export function values_at(keys: KeyFrame[], seconds: number): Values {
@@ -110,16 +107,15 @@ export class Film {
     if (!home) this.save.title = 'Films need the program: copy the command line below.';
   }
 
-  /** The share of a file under way. */
-  progress(share: number): void {
-    const { frames, file } = this.making, drawn = Math.floor(share * frames + 1e-6);
-    if (share < nearly_whole) {
-      this.bar.value = share;
-      this.doing.textContent = share > 0 ? `Drawing: ${drawn} of ${frames} pictures are there` : `Looking at the model at all moments, then drawing ${frames} pictures …`;
-    } else {
-      this.bar.removeAttribute('value');
-      this.doing.textContent = drawn < frames ? `Drawing the last of the ${frames} pictures, then writing ${file} …` : `All ${frames} pictures are drawn. Writing ${file} …`;
-    }
+  /** Each stage fills the bar anew. */
+  progress({ stage, share }: Progress): void {
+    const { frames, file } = this.making;
+    this.bar.value = share;
+    this.doing.textContent = {
+      measure: `Looking at the model at all moments, then drawing ${frames} pictures …`,
+      draw: `Drawing: ${Math.floor(share * frames + 1e-6)} of ${frames} pictures are there`,
+      assemble: `All ${frames} pictures are drawn. Writing ${file} …`,
+    }[stage];
   }
 
   /** Whether a file under way is the film. */

@@ -3,11 +3,11 @@ import { element } from './dom';
 
 const parts: [string, [string, string][]][] = [
   ['Picture', [
-    ['drag, or arrow keys', 'orbit; pan a flat model'],
+    ['drag, or arrow keys', 'orbit; near by, about the surface in the middle; pan a flat model'],
     ['Shift and drag, or Shift and arrow keys', 'pan; orbit a flat model'],
     ['drag by the right or middle button', 'pan'],
     ['Ctrl and drag, or Page Up and Page Down', 'move the camera nearer and farther'],
-    ['wheel, two fingers, or + and −', 'zoom, without an end'],
+    ['wheel, or + and −', 'zoom, without an end'],
     ['0', 'show the whole model'],
     ['click', 'select the rule in the text'],
   ]],
@@ -23,7 +23,7 @@ const parts: [string, [string, string][]][] = [
   ]],
   ['Touch', [
     ['one finger on the picture', 'orbit; pan a flat model'],
-    ['two fingers', 'zoom, about the place between them'],
+    ['two fingers', 'pan and zoom: what is under them goes with them'],
     ['a tap', 'select the rule in the text'],
     ['one finger on the dot, a box or its handles', 'drag it, as a mouse does'],
   ]],

@@ -4,7 +4,6 @@ import { Digraph } from './digraph';
 import { by_id, element, soon } from './dom';
 import { Divider } from './divider';
 import { Editor } from './editor';
-import { nearly_whole } from './film';
 import { fill_help } from './help';
 import { History } from './history';
 import { Knobs } from './knobs';
@@ -331,10 +330,9 @@ class Page implements Studio, Listener {
     this.fit();
   }
 
-  progress({ number, share }: Progress): void {
-    const made = share ?? 0;
-    if (this.time.film.is_film(number)) this.time.film.progress(made);
-    else this.say(made >= nearly_whole ? 'Writing the file …' : `Working on the file: ${Math.round(100 * made)} %`);
+  progress(message: Progress): void {
+    if (this.time.film.is_film(message.number)) this.time.film.progress(message);
+    else this.say(message.share === 1 ? 'Writing the file …' : `Working on the file: ${Math.round(100 * message.share)} %`);
   }
 
   pass(message: Pass): void {

@@ -121,8 +121,8 @@ export interface Model {
 export interface Progress {
   type: 'progress';
   number: number;
-  stage: string;
-  share: number | null;
+  stage: 'measure' | 'draw' | 'assemble';
+  share: number;
 }
 
 export interface Pass {

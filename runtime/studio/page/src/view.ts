@@ -1,10 +1,10 @@
-// The person's hands on the picture: orbit, pan and dolly by mouse, touch and keys; the wheel zooms without an end. A flat
-// model is panned where others are orbited, and the other way round.
-import { dollied, orbited, panned, tidied } from './camera';
+// The person's hands on the picture: orbit, pan and dolly by mouse, touch and keys; the wheel zooms without an end, and two
+// fingers do, which pan too. A flat model is panned where others are orbited, and the other way round.
+import { aimed, dollied, orbited, panned, tidied } from './camera';
 import { by_id } from './dom';
-import { flat_axis } from './vectors';
+import { dot, flat_axis, length, subtract, units_of_pixel, view_of } from './vectors';
 import type { Studio } from './studio';
-import type { Camera } from './protocol';
+import type { Camera, Choices, Vec3 } from './protocol';
 
 /** A notch of a wheel enlarges so much. */
 const notch_px = 120, notch_factor = 1.3;
@@ -12,22 +12,32 @@ const notch_px = 120, notch_factor = 1.3;
 const most_factor = 64, most_waiting = 100;
 const turn_rad_of_px = 0.008, key_turn_rad = 0.1, key_pan_px = 40;
 
-/** An enlargement that the picture shows already, before the session has drawn it. */
-interface Ahead {
+/** A point under a pixel comes to (x, y), by (dx, dy), and is enlarged. The picture shows it before the session has drawn it. */
+interface Step {
   factor: number;
   x: number;
   y: number;
-  /** Of the state that holds it; null: none was sent yet. */
+  dx: number;
+  dy: number;
+  /** Notches of a wheel stay apart: those back are answered by the very states of those there. */
+  whole: boolean;
+  /** Of the state that holds it; null: nobody has asked for one. */
   number: number | null;
 }
 
+type Seen = Pick<Choices, 'camera' | 'at' | 'zoom'>;
+
 export class ViewControl {
-  private ahead: Ahead[] = [];
   private readonly pointers = new Map<number, { x: number; y: number }>();
   private moved_px = 0;
-  /** Enlargements to ask for. Notches stay apart: those back are answered by the very states of those there. */
-  private readonly wanted: { factor: number; x: number; y: number; whole: boolean }[] = [];
-  private asking = false;
+  /** Steps that the picture does not have yet, in their order. */
+  private steps: Step[] = [];
+  private stepping = false;
+  /** The turn that is still to be made, to the right and up. */
+  private turn: [number, number] = [0, 0];
+  private aiming = false;
+  /** The camera that has aimed, and only turned since. */
+  private turned: Camera | null = null;
 
   constructor(
     private readonly view: HTMLElement, private readonly canvas: HTMLCanvasElement, private readonly studio: Studio,
@@ -52,21 +62,23 @@ export class ViewControl {
     return [((clientX - box.left) / box.width) * width_px, ((clientY - box.top) / box.height) * height_px];
   }
 
-  /** Enlarges at once what is seen, and asks for the state that shows it; further calls meanwhile add up. */
-  zoom(factor: number, x = this.studio.size.width_px / 2, y = this.studio.size.height_px / 2, whole = true): void {
+  /** Enlarges, and moves, at once what is seen, and asks for the state that shows it; further calls meanwhile add up. */
+  zoom(factor: number, x = this.studio.size.width_px / 2, y = this.studio.size.height_px / 2, whole = true, dx = 0, dy = 0): void {
     if (!this.studio.model) return;
-    const last = this.wanted.at(-1);
-    if (last && (this.wanted.length > most_waiting || !(whole || last.whole))) Object.assign(last, { factor: last.factor * factor, x, y });
-    else this.wanted.push({ factor, x, y, whole });
-    this.ahead.push({ factor, x, y, number: null });
+    const last = this.steps.at(-1);
+    if (last?.number === null && (this.steps.length > most_waiting || !(whole || last.whole))) {
+      Object.assign(last, { factor: last.factor * factor, x, y, dx: last.dx + dx, dy: last.dy + dy });
+    } else {
+      this.steps.push({ factor, x, y, dx, dy, whole, number: null });
+    }
     this.show_ahead();
-    void this.ask_zooms();
+    void this.take_steps();
   }
 
   /** The picture of a state is there: what was shown ahead of it is in it. */
   painted(number: number): void {
-    if (!this.ahead.length) return;
-    this.ahead = this.ahead.filter((one) => one.number === null || one.number > number);
+    if (!this.steps.length) return;
+    this.steps = this.steps.filter((step) => step.number === null || step.number > number);
     this.show_ahead();
   }
 
@@ -76,35 +88,39 @@ export class ViewControl {
   }
 
   forget_ahead(): void {
-    this.wanted.length = 0;
-    this.ahead = [];
+    this.steps = [];
     this.show_ahead();
   }
 
-  private async ask_zooms(): Promise<void> {
-    if (this.asking) return;
-    this.asking = true;
-    for (let next = this.wanted.shift(); next; next = this.wanted.shift()) {
-      const factor = Math.max(1 / most_factor, Math.min(most_factor, next.factor)), rest = next.factor / factor;
-      if (Math.abs(rest - 1) > 1e-9) this.wanted.unshift({ ...next, factor: rest });
-      await this.zoom_now({ ...next, factor });
-    }
-    this.asking = false;
+  private async take_steps(): Promise<void> {
+    if (this.stepping) return;
+    this.stepping = true;
+    // Two fingers move one after the other: their steps are one, or each would enlarge.
+    await new Promise(requestAnimationFrame);
+    for (let step = this.next_step(); step; step = this.next_step()) await this.take(step);
+    this.stepping = false;
   }
 
-  private async zoom_now({ factor, x, y }: { factor: number; x: number; y: number }): Promise<void> {
+  /** An enlargement that is more than one ask may want is two steps. */
+  private next_step(): Step | undefined {
+    const at = this.steps.findIndex(({ number }) => number === null), step = this.steps[at];
+    const factor = step && Math.max(1 / most_factor, Math.min(most_factor, step.factor));
+    if (step && factor !== step.factor) {
+      this.steps.splice(at + 1, 0, { ...step, factor: step.factor / factor!, dx: 0, dy: 0 });
+      step.factor = factor!;
+    }
+    return step;
+  }
+
+  private async take(step: Step): Promise<void> {
+    const { factor, x, y, dx, dy } = step;
+    step.number = Infinity;
     try {
-      const answer = await this.studio.session.ask('zoom', { x, y, factor });
-      const { at = null, zoom = null, camera = null } = answer as { at?: string; zoom?: string; camera?: Camera };
+      const answer = await this.studio.session.ask('zoom', { x: x - dx, y: y - dy, factor, dx, dy });
+      if (!this.steps.includes(step)) return; // forgotten meanwhile
+      const { at = null, zoom = null, camera = null } = answer as Partial<Seen>;
       this.studio.change({ at, zoom, camera }, 'zoom');
-      // The oldest enlargements that are shown ahead are in this state now.
-      const number = this.studio.session.number + (this.studio.session.holds ? 1 : 0);
-      for (let left = factor, i = 0; i < this.ahead.length && Math.abs(Math.log(left)) > 1e-9; ++i) {
-        const one = this.ahead[i]!;
-        if (one.number !== null) continue;
-        one.number = number;
-        left /= one.factor;
-      }
+      step.number = this.studio.session.number + (this.studio.session.holds ? 1 : 0);
     } catch (error) {
       this.forget_ahead();
       this.studio.say((error as Error).message);
@@ -114,12 +130,12 @@ export class ViewControl {
   private show_ahead(): void {
     const { width_px, height_px } = this.studio.size;
     let scale = 1, left = 0, top = 0;
-    for (const { factor, x, y } of this.ahead) {
+    for (const { factor, x, y, dx, dy } of this.steps) {
       scale *= factor;
-      left = x + (left - x) * factor;
-      top = y + (top - y) * factor;
+      left = x + (left - x + dx) * factor;
+      top = y + (top - y + dy) * factor;
     }
-    this.canvas.style.transform = this.ahead.length
+    this.canvas.style.transform = this.steps.length
       ? `translate(${(100 * left) / width_px}%, ${(100 * top) / height_px}%) scale(${scale})` : '';
   }
 
@@ -138,14 +154,52 @@ export class ViewControl {
     if (camera) this.studio.change({ camera: tidied(change(camera)) }, key);
   }
 
+  /** Turns about the point that the camera looks at: near by, the surface in the middle of the view, if there is one. */
+  private async orbit(right_rad: number, up_rad: number, key: string): Promise<void> {
+    const { studio } = this;
+    this.turn = [this.turn[0] + right_rad, this.turn[1] + up_rad];
+    if (this.aiming) return;
+    const { camera, at, zoom } = studio.history.now;
+    let distance: number | null = null;
+    if ((camera === null || camera !== this.turned) && this.sees_part()) {
+      this.aiming = true;
+      distance = await this.distance_to_middle();
+      this.aiming = false;
+    }
+    const turn = this.turn, now = studio.history.now;
+    this.turn = [0, 0];
+    if (now.camera !== camera || now.at !== at || now.zoom !== zoom) return; // another hand has taken the camera
+    this.steer((seen) => orbited(distance === null ? seen : aimed(seen, distance), ...turn), key);
+    this.turned = studio.history.now.camera;
+  }
+
+  /** Whether less than half of the model finds room at the depth that the camera looks at. */
+  private sees_part(): boolean {
+    const { camera, model, size, history } = this.studio;
+    if (history.now.zoom !== null) return true;
+    if (!camera || !model?.box) return false;
+    const widest = units_of_pixel(camera, size.width_px) * Math.max(size.width_px, size.height_px);
+    return widest < 0.5 * length(subtract(model.box.most, model.box.least));
+  }
+
+  /** From the camera to the surface in the middle of the view, along its sight; null: nothing is there. */
+  private async distance_to_middle(): Promise<number | null> {
+    const { camera, session, size } = this.studio;
+    if (!camera) return null;
+    try {
+      const { point } = await session.ask('pick', { x: size.width_px / 2, y: size.height_px / 2 });
+      const distance = point ? dot(subtract(point as Vec3, camera.location), view_of(camera).into) : 0;
+      return distance > 0 ? distance : null;
+    } catch {
+      return null; // a text with an error has no surfaces
+    }
+  }
+
   private down(event: PointerEvent): void {
     if ((event.target as Element).closest('[data-handle]')) return;
     this.view.setPointerCapture(event.pointerId);
-    if (this.pointers.size === 0) {
-      this.moved_px = 0;
-    } else {
-      this.moved_px = 100;
-    }
+    this.moved_px = this.pointers.size === 0 ? 0 : 100;
+    this.turned = null;
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
   }
 
@@ -162,9 +216,9 @@ export class ViewControl {
       const before = Math.hypot(last.x - other.x, last.y - other.y), after = Math.hypot(event.clientX - other.x, event.clientY - other.y);
       last.x = event.clientX;
       last.y = event.clientY;
-      if (before > 10 && after > 10) {
-        this.zoom(after / before, ...this.at({ clientX: (last.x + other.x) / 2, clientY: (last.y + other.y) / 2 }));
-      }
+      const factor = before > 10 && after > 10 ? after / before : 1, px = this.studio.size.width_px / box.width;
+      const [x, y] = this.at({ clientX: (last.x + other.x) / 2, clientY: (last.y + other.y) / 2 });
+      this.zoom(factor, x, y, false, (dx / 2) * px, (dy / 2) * px);
       return;
     }
     last.x = event.clientX;
@@ -174,7 +228,7 @@ export class ViewControl {
     } else if (event.buttons & 6 || event.shiftKey !== this.is_flat) {
       this.steer((camera) => panned(camera, dx, dy, box.width), 'camera');
     } else {
-      this.steer((camera) => orbited(camera, dx * turn_rad_of_px, dy * turn_rad_of_px), 'camera');
+      void this.orbit(dx * turn_rad_of_px, dy * turn_rad_of_px, 'camera');
     }
   }
 
@@ -192,7 +246,7 @@ export class ViewControl {
     if (arrow && event.shiftKey !== this.is_flat) {
       this.steer((camera) => panned(camera, -arrow[0] * key_pan_px, -arrow[1] * key_pan_px, width), 'camera key');
     } else if (arrow) {
-      this.steer((camera) => orbited(camera, arrow[0] * key_turn_rad, arrow[1] * key_turn_rad), 'camera key');
+      void this.orbit(arrow[0] * key_turn_rad, arrow[1] * key_turn_rad, 'camera key');
     } else if (event.key === '+' || event.key === '=') this.zoom(1.25);
     else if (event.key === '-' || event.key === '_') this.zoom(0.8);
     else if (event.key === '0') this.whole();

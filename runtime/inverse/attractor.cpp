@@ -5,37 +5,39 @@
 
 namespace graftal {
 
-AttractorPainter::AttractorPainter(const Target& target)
-    : target_(target),
-      quarters_(static_cast<std::size_t>(target.width()) * static_cast<std::size_t>(target.height()) * 4),
-      drawn_(quarters_.size() / 4) {}
+AttractorPainter::AttractorPainter(const Target& target, std::uint32_t parts)
+    : target_(target), parts_(parts),
+      drawn_(static_cast<std::size_t>(target.width()) * static_cast<std::size_t>(target.height())),
+      drawn_parts_(drawn_.size() * parts * parts) {}
 
 std::uint64_t AttractorPainter::draw(const PlaneMaps& maps) {
-    for (const std::uint32_t quarter : touched_)
-        quarters_[quarter] = 0;
+    for (const std::uint32_t part : touched_)
+        drawn_parts_[part] = 0;
     for (const std::uint32_t cell : cells_)
         drawn_[cell] = 0;
     touched_.clear();
     cells_.clear();
     outside_ = 0;
-    const int width = 2 * target_.width(), height = 2 * target_.height();
+    const auto cells_a_row = static_cast<std::uint32_t>(target_.width());
+    const double parts = parts_, width = parts * target_.width(), height = parts * target_.height();
     queue_.assign(1, fixed_point(maps.front()));
     for (std::size_t i = 0; i < queue_.size(); ++i) {
         const Vec2 p = queue_[i];
         for (const PlaneMap& map : maps) {
             const Vec2 q = map(p);
-            const double column = 2 * q.x, row = 2 * q.y;
+            const double column = parts * q.x, row = parts * q.y;
             if (!(column >= 0 && row >= 0 && column < width && row < height)) {
                 ++outside_;
                 continue;
             }
             const auto x = static_cast<std::uint32_t>(column), y = static_cast<std::uint32_t>(row);
-            const std::uint32_t quarter = y * static_cast<std::uint32_t>(width) + x;
-            if (quarters_[quarter]) continue;
-            quarters_[quarter] = 1;
-            touched_.push_back(quarter);
+            const std::uint32_t part = y * cells_a_row * parts_ + x;
+            if (drawn_parts_[part]) continue;
+            drawn_parts_[part] = 1;
+            touched_.push_back(part);
             queue_.push_back(q);
-            const std::uint32_t cell = (y / 2) * static_cast<std::uint32_t>(width / 2) + x / 2;
+            const std::uint32_t cell =
+                static_cast<std::uint32_t>(q.y) * cells_a_row + static_cast<std::uint32_t>(q.x);
             if (drawn_[cell]) continue;
             drawn_[cell] = 1;
             cells_.push_back(cell);

@@ -19,10 +19,12 @@ struct SetAgreement {
 /// Draws attractors on the grid of a target. It keeps its memory between drawings.
 class AttractorPainter {
   public:
-    explicit AttractorPainter(const Target& target);
+    /// `parts`: of a cell's side, a power of two. With more of them, fewer cells are missed that the
+    /// attractor hardly touches.
+    explicit AttractorPainter(const Target& target, std::uint32_t parts = 2);
 
     /// Draws the attractor of contractions: every point that is kept is one of the attractor, and its images
-    /// are drawn in turn, one for each quarter of a cell. Returns the maps that were applied.
+    /// are drawn in turn, one for each part of a cell. Returns the maps that were applied.
     std::uint64_t draw(const PlaneMaps& maps);
 
     /// SetAgreement of the drawn attractor, without the Chamfer distance.
@@ -36,7 +38,8 @@ class AttractorPainter {
     bool beside(std::size_t cell) const;
 
     const Target& target_;
-    std::vector<std::uint8_t> quarters_, drawn_;
+    std::uint32_t parts_;
+    std::vector<std::uint8_t> drawn_, drawn_parts_;
     std::vector<std::uint32_t> cells_, touched_;
     std::vector<Vec2> queue_;
     std::size_t outside_ = 0; ///< images beyond the grid

@@ -10,6 +10,7 @@
 #include "compiler/chaos/ordinary_ifs.h"
 #include "compiler/support/number.h"
 #include "compiler/support/printable.h"
+#include "runtime/inverse/occupancy.h"
 #include "runtime/render/picture_session.h"
 #include "runtime/system/worker_threads.h"
 
@@ -254,8 +255,8 @@ std::optional<FoundModel> find_model(const FindOptions& options, const CancelFla
     std::optional<PlaneMaps> start = start_of(options, frame, target, compilation);
     if (!start) return std::nullopt;
     search_options.start = std::move(*start);
-    FoundSystem system =
-        search(target, search_options, WorkerThreads(options.threads), cancel, options.on_progress);
+    FoundSystem system = (options.occupancy ? search_occupancy : search)(
+        target, search_options, WorkerThreads(options.threads), cancel, options.on_progress);
 
     // The largest image comes first. The numbers are measured as they are written.
     std::stable_sort(system.maps.begin(), system.maps.end(), [](const PlaneMap& a, const PlaneMap& b) {
@@ -267,7 +268,7 @@ std::optional<FoundModel> find_model(const FindOptions& options, const CancelFla
         found.maps.push_back(rounded(frame.in_model(map)));
         written.push_back(frame.in_cells(found.maps.back()));
     }
-    AttractorPainter painter(target);
+    AttractorPainter painter(target, options.occupancy ? occupancy_parts(target) : 2);
     painter.draw(written);
     found.agreement = painter.agreement_in_full();
     if (options.in_colour) found.colours = fit_colours(target, written, colours_of(target, picture, crop));

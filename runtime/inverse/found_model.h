@@ -15,6 +15,7 @@ struct FindOptions {
     std::string target; ///< a picture
     TargetCriterion criterion;
     SearchOptions search;
+    bool occupancy = false; ///< by search_occupancy(): the same cells; else by search()
     bool in_colour = false; ///< gives each map a tint, too
     std::string start;      ///< a model to begin with, in the frame of found models; "": none
     StageOptions compile;   ///< of that model

@@ -44,6 +44,7 @@ struct PointsSettings {
 struct FitSettings {
     std::size_t most_maps = 8;
     bool similar = false;
+    bool occupancy = false; ///< equal cells, and not those within one cell
     bool in_colour = false; ///< a tint for each map, too
     std::string start;      ///< a model, or ""
     bool blocks = false;

@@ -13,7 +13,7 @@ OPTIONS = {
                '--zoom', '--at', '--camera'],
     'animate': ['--frames', '--fps', '--turn', '--ease', '--camera', '--zoom', '--keep-frames'],
     'stats': ['--json', '--work'], 'check': ['--work'], 'print': ['--after', '--work'], 'graph': ['--after', '--work'], 'collage': ['--threshold', '--light', '--json'],
-    'compare': ['--threshold', '-q'], 'fit': ['--maps', '--similar', '--threshold', '--light', '--start', '--json', '--blocks', '--tolerance'],
+    'compare': ['--threshold', '-q'], 'fit': ['--maps', '--similar', '--objective', '--threshold', '--light', '--start', '--json', '--blocks', '--tolerance'],
 }
 COMMON = ['--steps', '--set', '--seed', '--exact', '--memory', '--threads', '--dump-after', '--time', '-q', '--root']
 FLAGS = {'--test-linear', '--progressive', '--no-progressive', '--aovs', '--flatten', '--visible-only', '--transparent', '--json', '--light', '--exact', '--time', '-q',
@@ -25,6 +25,7 @@ VALUES = {
     '--camera': ['location=0,0,5 look_at=0,0,0', 'width=1e-99 orthographic', 'angle=179.9', 'location=1e100,0,0', 'up=0,0,0', 'angle=0',
                  'location=0,0,0 look_at=0,0,0', 'orthographic', 'look_at=nan,0,0'],
     '--memory': ['1', '1M', '64M', '2G', '0', '1e30G', '-1M'],
+    '--objective': ['near', 'occupancy', 'far', ''],
     '--zoom': ['1', '10', '1e10', '1e100', '2^330', '1e-5', '1e1000', '10^1000000', '0', '-3'],
     '--part': ['a', 'leaf', 'a,b', 'o0', '', '.', 'x' * 300],
     '--steps': ['0', '1', '5', '50', '1000', '4000000000', '7.5', '-1', '1e9'],

@@ -100,6 +100,37 @@ TEST_F(FoundModelTest, ItsTextIsTheModelThatItMeasured) {
     EXPECT_LE(*collage->distance, collage->bound);
 }
 
+/// A figure of pen strokes, no attractor of a few maps.
+bool in_figure(int x, int y) {
+    const double away = std::hypot(x - 11.5, y - 9.5);
+    const bool bow = std::abs(away - 6) < 1.2 && (y < 10 || x > 11),
+               foot = std::abs(y - 25) < 2 && x > 4 && x < 25;
+    return bow || foot || (std::abs(x + y - 27.5) < 1.8 && y > 12 && y < 25);
+}
+
+TEST_F(FoundModelTest, OccupancyFindsTheCellsThemselves) {
+    const std::string target = picture(32, 32, in_figure);
+    options_.search.most_maps = 10;
+    const auto near = find(target, 1);
+    options_.occupancy = true;
+    const auto one = find(target, 1), two = find(target, 1, 2);
+    ASSERT_TRUE(near && one && two) << message_;
+    EXPECT_GT(one->agreement.strict, 0.9);
+    EXPECT_GT(one->agreement.strict, near->agreement.strict + 0.1);
+    EXPECT_LE(one->maps.size(), 10);
+    EXPECT_LT(one->contractivity, 0.9301);
+    EXPECT_LT(one->seconds, 1.2) << "the work is bounded";
+    EXPECT_EQ(one->text, two->text);
+}
+
+TEST_F(FoundModelTest, OccupancyKeepsWhatTheOtherSearchFinds) {
+    options_.occupancy = true;
+    const auto found = find(attractor(gasket, 200), 3);
+    ASSERT_TRUE(found) << message_;
+    EXPECT_GE(found->agreement.tolerant, 0.99);
+    EXPECT_GE(found->agreement.strict, 0.85);
+}
+
 TEST_F(FoundModelTest, ThreadsDoNotMatterAndSeedsDo) {
     const std::string target = attractor(gasket, 100);
     options_.search.rules.similar = true;
@@ -135,11 +166,15 @@ TEST_F(FoundModelTest, ItGoesOnFromAModel) {
 }
 
 TEST_F(FoundModelTest, AnInterruptedSearchHasAnAnswer) {
-    int asked = 0;
-    const auto found = find(attractor(gasket, 100), 1000, 1, CancelFlag([&asked] { return ++asked > 40; }));
-    ASSERT_TRUE(found) << message_;
-    EXPECT_LT(found->contractivity, 1);
-    EXPECT_THAT(found->text, HasSubstr("codes 2d"));
+    for (const bool occupancy : {false, true}) {
+        options_.occupancy = occupancy;
+        int asked = 0;
+        const auto found =
+            find(attractor(gasket, 100), 1000, 1, CancelFlag([&asked] { return ++asked > 40; }));
+        ASSERT_TRUE(found) << message_;
+        EXPECT_LT(found->contractivity, 1);
+        EXPECT_THAT(found->text, HasSubstr("codes 2d"));
+    }
 }
 
 TEST_F(FoundModelTest, HostileTargetsAreAnsweredOrRefused) {
@@ -154,13 +189,20 @@ TEST_F(FoundModelTest, HostileTargetsAreAnsweredOrRefused) {
 
     const auto line = find(picture(300, 1, [](int, int) { return true; }), 0.2);
     ASSERT_TRUE(line) << message_;
-    const auto full = find(picture(60, 40, [](int, int) { return true; }), 1);
-    ASSERT_TRUE(full) << message_;
-    EXPECT_GE(full->agreement.tolerant, 0.95);
-    Draws draws(CounterRandom(3), 0);
-    const auto noise = find(picture(200, 200, [&](int, int) { return draws.unit() < 0.05; }), 0.5);
-    ASSERT_TRUE(noise) << message_;
-    EXPECT_LT(noise->seconds, 5) << "the work is bounded";
+    for (const bool occupancy : {false, true}) {
+        options_.occupancy = occupancy;
+        const auto full = find(picture(60, 40, [](int, int) { return true; }), 1);
+        ASSERT_TRUE(full) << message_;
+        EXPECT_GE(full->agreement.tolerant, 0.95);
+        Draws draws(CounterRandom(3), 0);
+        const auto noise = find(picture(200, 200, [&](int, int) { return draws.unit() < 0.05; }), 0.5);
+        ASSERT_TRUE(noise) << message_;
+        EXPECT_LT(noise->seconds, 5) << "the work is bounded";
+    }
+    options_.occupancy = true;
+    ASSERT_TRUE(find(path("t.png"), 0.01)) << message_;
+    ASSERT_TRUE(find(picture(300, 1, [](int, int) { return true; }), 0.2)) << message_;
+    options_.occupancy = false;
     const auto dots =
         find(picture(3000, 3000, [](int x, int y) { return x % 100 == 0 && y % 100 == 0; }), 0.2);
     ASSERT_TRUE(dots) << message_;

@@ -1,10 +1,13 @@
 #include "runtime/inverse/plane_map.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <gtest/gtest.h>
 
 #include "runtime/inverse/attractor.h"
+#include "runtime/inverse/map_steps.h"
 #include "runtime/inverse/refine.h"
 
 namespace graftal {
@@ -80,6 +83,28 @@ TEST(Attractor, FillsTheSquareThatItIs) {
     EXPECT_LT(painter.agreement().strict, 0.4);
     painter.draw(square.maps);
     EXPECT_EQ(painter.agreement().tolerant, 1) << "nothing is left of an earlier drawing";
+}
+
+TEST(MapSteps, KeepTheRulesAndTheMostMaps) {
+    const Square square;
+    const Target target(square.set);
+    Draws draws(CounterRandom(6), 0);
+    for (const bool similar : {false, true}) {
+        const MapSteps steps(target, {0.9, similar}, 5);
+        PlaneMaps maps(square.maps.begin(), square.maps.begin() + 1);
+        std::size_t most = 0, fewest = 5;
+        for (int i = 0; i < 3000; ++i) {
+            steps.step(maps, std::span(target.points()).first(i % 2 ? 9 : 0), draws);
+            ASSERT_FALSE(maps.empty());
+            ASSERT_LE(largest_stretch(maps), 0.9 + 1e-9);
+            for (const PlaneMap& map : maps)
+                ASSERT_TRUE(!similar || std::abs(std::abs(map.a) - std::abs(map.d)) < 1e-9);
+            most = std::max(most, maps.size());
+            if (i > 1000) fewest = std::min(fewest, maps.size());
+        }
+        EXPECT_EQ(most, 5);
+        EXPECT_EQ(fewest, 2);
+    }
 }
 
 TEST(Refine, MovesMapsBackToTheCollage) {

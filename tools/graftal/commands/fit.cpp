@@ -22,6 +22,7 @@ FindOptions find_options(const Options& options) {
     find.search.rules.similar = options.fit.similar;
     find.search.seconds = options.render.work_seconds.value_or(find.search.seconds);
     find.search.seed = options.render.compile.lower.seed.value_or(find.search.seed);
+    find.occupancy = options.fit.occupancy;
     find.in_colour = options.fit.in_colour;
     find.start = options.fit.start;
     find.compile = inspecting(options, true);

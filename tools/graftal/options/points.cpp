@@ -209,6 +209,11 @@ void add_fit_options(CLI::App& app, Options& options) {
         [&fit](std::uint64_t maps) { fit.most_maps = static_cast<std::size_t>(maps); });
     app.add_flag("--similar", fit.similar,
                  "Only maps that keep angles: turns, mirrors and one factor of size");
+    add_choice<bool>(
+        app, "--objective",
+        "What the search betters: near, cells of the target within one cell; occupancy, the very cells, with "
+        "as many maps as --maps allows (default near)",
+        {{"near", false}, {"occupancy", true}}, [&fit](bool occupancy) { fit.occupancy = occupancy; });
     app.add_flag("--color", fit.in_colour,
                  "Give each map a tint, so that the model has the target's colours");
     app.add_option(
@@ -220,7 +225,8 @@ void add_fit_options(CLI::App& app, Options& options) {
         "--blocks", fit.blocks,
         "Code the whole picture, grey or in colour, by blocks that are copies of larger ones: a .pifs "
         "file, which 'graftal render' decodes at any size");
-    for (const char* const other : {"--threshold", "--light", "--maps", "--similar", "--color", "--start"})
+    for (const char* const other :
+         {"--threshold", "--light", "--maps", "--similar", "--objective", "--color", "--start"})
         blocks->excludes(other);
     add_value(app, "--tolerance", "X",
               "With --blocks: error that photographs then have, about, root mean square in levels of 255; "
@@ -239,6 +245,7 @@ void add_fit_options(CLI::App& app, Options& options) {
         "Examples:\n"
         "  graftal fit leaf.png                                   # makes leaf.rifs\n"
         "  graftal fit leaf.png --maps 4 --work 120 --seed 7 -o other.rifs\n"
+        "  graftal fit digit.png --maps 10 --objective occupancy  # the same cells, by more maps\n"
         "  graftal fit leaf.png --start leaf.rifs                 # goes on from there\n"
         "  graftal fit curve.svg                                  # an L-system: makes curve.lsys\n"
         "  graftal points leaf.rifs --size 400x400 -o again.png   # the target's size gives its frame\n"
@@ -267,9 +274,9 @@ std::string complete_fit(Options& options) {
     const TargetCriterion usual, &criterion = options.points.criterion;
     if (draws && (criterion.light != usual.light || criterion.threshold != usual.threshold))
         return "--threshold and --light are for pictures, and not for drawings";
-    if (draws &&
-        (fit.similar || fit.in_colour || !fit.start.empty() || fit.most_maps != FitSettings().most_maps))
-        return "--maps, --similar, --color and --start are for pictures, and not for drawings";
+    if (draws && (fit.similar || fit.occupancy || fit.in_colour || !fit.start.empty() ||
+                  fit.most_maps != FitSettings().most_maps))
+        return "--maps, --similar, --objective, --color and --start are for pictures, and not for drawings";
     if (output == "-" && options.json)
         return "--json prints where '-o -' writes the model: leave one of them out";
     return {};

@@ -22,6 +22,8 @@ constexpr int most_turn_units = 24;
 constexpr std::size_t most_turns = 1000;
 constexpr double most_cut_strokes = 2'000'000;
 constexpr double least_angle_deg = 1;
+constexpr double fine_deg = 0.02; ///< between turns that are equal where directions go round many times
+constexpr std::size_t most_followed_angles = 100;
 
 double stroke_length(const Stroke& stroke) {
     return std::hypot(stroke.to.x - stroke.from.x, stroke.to.y - stroke.from.y);
@@ -113,13 +115,17 @@ class StrokeGraphBuilder {
         }
     }
 
-    std::uint32_t place_of(StrokeGraph& graph, Vec2 point) {
+    std::optional<std::uint32_t> place_at(const StrokeGraph& graph, Vec2 point) const {
         std::optional<std::uint32_t> found;
         cells_.near(point, [&](std::uint32_t place) {
             const Vec2 away = graph.places[place] - point;
             if (!found && std::hypot(away.x, away.y) <= reach_) found = place;
         });
-        if (found) return *found;
+        return found;
+    }
+
+    std::uint32_t place_of(StrokeGraph& graph, Vec2 point) {
+        if (const auto found = place_at(graph, point)) return *found;
         const auto number = static_cast<std::uint32_t>(graph.places.size());
         graph.places.push_back(point);
         cells_.add(point, number);
@@ -179,8 +185,14 @@ class StrokeGraphBuilder {
                 }
             }
         if (least < HUGE_VAL) return true;
-        for (const auto& turn : turns) {
-            const double angle = refined(joints, {turn.first, 0});
+        // Joints that went round lie near others, so that groups of a finer width tell the angle.
+        auto fine = value_groups(joints, fine_deg);
+        fine.resize(std::min(fine.size(), most_followed_angles));
+        for (const auto& turn : fine) {
+            std::vector<double> direct = joints;
+            std::erase_if(
+                direct, [&](double joint) { return std::abs(std::remainder(joint, turn.first)) > fine_deg; });
+            const double angle = refined(direct, {turn.first, 0});
             if (!follow_turns(graph, angle)) continue;
             best = {angle, 0};
             return true;
@@ -190,22 +202,22 @@ class StrokeGraphBuilder {
 
     /// Finds directions that go round many times, from stroke to stroke; false if they are no multiples.
     bool follow_turns(const StrokeGraph& graph, double angle_deg) {
-        constexpr double most_error_deg = 0.02;
         meter_.add(strokes_.size());
-        // Strokes that leave each place, until they are seen: else a place of many would be gone through for
-        // each.
+        // Strokes of each place, until they are seen: else a place of many would be gone through for each.
         std::vector<std::vector<std::uint32_t>> unseen(graph.places.size());
         for (std::uint32_t i = 1; i < strokes_.size(); ++i)
-            unseen[ends_[std::size_t{2} * i]].push_back(i);
+            for (const std::uint32_t place : {ends_[std::size_t{2} * i], ends_[std::size_t{2} * i + 1]})
+                unseen[place].push_back(i);
         std::vector<bool> seen(strokes_.size());
         followed_.assign(strokes_.size(), 0);
         const auto next_to = [&](std::uint32_t at, const auto& next) {
             for (const std::uint32_t place : {ends_[std::size_t{2} * at], ends_[std::size_t{2} * at + 1]}) {
                 meter_.add(unseen[place].size());
                 std::erase_if(unseen[place], [&](std::uint32_t other) {
+                    if (seen[other]) return true;
                     const double turn = wrapped_deg(degrees_[other] - degrees_[at]);
-                    const auto units = static_cast<std::int32_t>(std::lround(turn / angle_deg));
-                    if (std::abs(turn - units * angle_deg) > most_error_deg) return false;
+                    const std::int32_t units = AngleGrid{angle_deg, 0}.units(turn);
+                    if (std::abs(wrapped_deg(turn - units * angle_deg)) > fine_deg) return false;
                     followed_[other] = followed_[at] + units;
                     next(other);
                     return true;
@@ -373,6 +385,54 @@ class StrokeGraphBuilder {
         std::ranges::stable_sort(graph.starts, [&](std::uint32_t a, std::uint32_t b) {
             return std::pair(a != ends_.front(), -surplus[a]) < std::pair(b != ends_.front(), -surplus[b]);
         });
+        drop_turned_starts(graph);
+    }
+
+    /// The places that a turn about the middle takes the places to; none if it changes the drawing.
+    std::vector<std::uint32_t> turned_places(const StrokeGraph& graph, Vec2 middle, double rad) const {
+        std::vector<std::uint32_t> turned;
+        for (const Vec2 place : graph.places) {
+            const Vec2 p = place - middle;
+            meter_.add();
+            const auto found = place_at(graph, middle + Vec2(std::cos(rad) * p.x - std::sin(rad) * p.y,
+                                                             std::sin(rad) * p.x + std::cos(rad) * p.y));
+            if (!found) return {};
+            turned.push_back(*found);
+        }
+        for (std::uint32_t place = 0; place < turned.size(); ++place)
+            for (const StrokeWay& way : graph.ways(place)) {
+                meter_.add();
+                const auto ways = graph.ways(turned[place]);
+                const bool same = std::ranges::any_of(ways, [&](const StrokeWay& other) {
+                    return other.to == turned[way.to] &&
+                           graph.copies[other.bundle] == graph.copies[way.bundle] &&
+                           graph.classes[other.bundle] == graph.classes[way.bundle];
+                });
+                if (!same) return {};
+            }
+        return turned;
+    }
+
+    /// Keeps one of the starts that turns of the drawing onto itself exchange: a search at each would do the
+    /// same.
+    void drop_turned_starts(StrokeGraph& graph) const {
+        Vec2 middle(0.0);
+        for (const Vec2 place : graph.places)
+            middle += place / static_cast<double>(graph.places.size());
+        for (std::int32_t parts = graph.directions; parts > 1 && graph.starts.size() > 1; --parts) {
+            if (graph.directions % parts != 0) continue;
+            const std::vector<std::uint32_t> turned =
+                turned_places(graph, middle, 2 * std::numbers::pi / parts);
+            if (turned.empty()) continue;
+            std::vector<bool> seen(graph.places.size());
+            std::erase_if(graph.starts, [&](std::uint32_t start) {
+                if (seen[start]) return true;
+                for (std::int32_t i = 0; i < parts; ++i, start = turned[start])
+                    seen[start] = true;
+                return false;
+            });
+            return;
+        }
     }
 
     const Strokes& strokes_;

@@ -2,13 +2,17 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "compiler/support/control.h"
+#include "compiler/support/stage_work.h"
 #include "runtime/inverse/lsystem/drawing_file.h"
 #include "runtime/inverse/lsystem/grammar_search.h"
+#include "runtime/inverse/lsystem/stroke_graph.h"
 #include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 
@@ -122,6 +126,33 @@ TEST_F(FoundLsystemTest, LengthsMayShrinkFromStepToStep) {
     EXPECT_EQ(found->steps, 6);
     EXPECT_THAT(found->text, HasSubstr("X(s) -> F(s)["));
     EXPECT_THAT(found->text, HasSubstr("X(s*0.7)"));
+}
+
+TEST_F(FoundLsystemTest, DirectionsThatGoRoundAreFollowedFromAnyLine) {
+    const std::string truth = "lsys m {\nangle 25.7\nsteps 4\naxiom F\nF -> +FF+F+FF\n}\n";
+    const auto found = find("d.csv", listed(drawing(truth)), 2);
+    ASSERT_TRUE(found) << message_;
+    EXPECT_EQ(found->angle_deg, 25.7);
+    EXPECT_EQ(found->letters, 6);
+    EXPECT_EQ(found->redrawn, 625);
+}
+
+TEST_F(FoundLsystemTest, StartsThatATurnExchangesAreTriedOnce) {
+    const auto starts = [&](const std::string& axiom) {
+        const Strokes strokes =
+            drawing("lsys m {\nangle 90\nsteps 2\naxiom " + axiom + "\nF -> F+F-F-FF+F+F-F\n}\n");
+        StageWork work;
+        const Control control{{}, {}, &work};
+        WorkMeter meter(control, "search", 4096, seconds_of_unfolded_module);
+        std::string problem;
+        const auto graphs = stroke_graphs(strokes, 0.01, meter, problem);
+        EXPECT_EQ(graphs.size(), 1u) << problem;
+        return std::pair(graphs.at(0).starts.size(), graphs.at(0).places.size());
+    };
+    const auto [island, places] = starts("F+F+F+F");
+    EXPECT_GT(places, 100u);
+    EXPECT_EQ(4 * island, places);
+    EXPECT_EQ(starts("F").first, 1u) << "a half turn takes the curve to itself, but not its directions";
 }
 
 TEST_F(FoundLsystemTest, ATurnedDrawingComesBackTurned) {

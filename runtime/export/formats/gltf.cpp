@@ -424,8 +424,8 @@ class GltfWriter {
     }
 
     int texture_of(MaterialId material) {
-        const auto [known, is_new] =
-            textures_.try_emplace(scene_.materials[material].texture, static_cast<int>(model_.textures.size()));
+        const auto [known, is_new] = textures_.try_emplace(scene_.materials[material].texture,
+                                                           static_cast<int>(model_.textures.size()));
         if (!is_new) return known->second;
         tinygltf::Image image;
         image.name = PictureCopies::stem(scene_.materials[material]);

@@ -646,6 +646,28 @@ test('a map is chosen in the list by Enter, and moved by arrow keys', async (han
   await hand.until(async () => (await page.textContent('#said')) === 'Its scale is one of a table.', 'it says why it stays');
 });
 
+test('a click on a box gives it the arrow keys', async (hand, page) => {
+  await page.click('#tab-maps');
+  await hand.settled();
+  const { x, y, width, height } = await page.locator('[data-map=right] [data-handle=move]').first().boundingBox();
+  await page.mouse.click(x + width / 2, y + height / 2);
+  const chosen = await page.getAttribute('.map.chosen[data-map]', 'data-map');
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.map), chosen);
+  await hand.changes(() => page.keyboard.press('ArrowUp'));
+  assert.equal(await page.getAttribute('#tab-maps', 'aria-selected'), 'true');
+});
+
+test('what changes nothing is no step, and keeps what was undone', async (hand, page) => {
+  await page.evaluate(() => window.studio.change({ set: { lean: 3 } }));
+  await hand.settled();
+  await page.click('#undo');
+  await hand.settled();
+  await page.click('#whole');
+  await page.evaluate(() => window.studio.change({ set: {} }));
+  assert.ok(await page.isDisabled('#undo'));
+  assert.ok(!(await page.isDisabled('#redo')));
+});
+
 test('a map is turned about its foot, or about its middle; the stem stays on the box', async (hand, page) => {
   const matrix = (name) => new RegExp(`map ${name} { matrix ([^}]*)}`).exec(hand.last().text)[1].split(',').map(Number);
   const gap = () => page.evaluate(() => {

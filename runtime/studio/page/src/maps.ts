@@ -92,7 +92,11 @@ export class Maps {
       .sort((a, b) => size_of(b.map) - size_of(a.map)).map(({ made }) => made);
     if (chosen >= 0) boxes.push(this.handles(maps[chosen]!, chosen, camera, flat));
     this.overlay.replaceChildren(...boxes);
-    if (focus) this.overlay.querySelector<SVGElement>(`[data-map="${CSS.escape(focus)}"]`)?.focus();
+    if (focus) this.focus(focus);
+  }
+
+  private focus(map: string): void {
+    this.overlay.querySelector<SVGElement>(`[data-map="${CSS.escape(map)}"]`)?.focus({ preventScroll: true });
   }
 
   private draw_list(maps: ModelMap[], more: number, zoomed: boolean): void {
@@ -239,6 +243,7 @@ export class Maps {
       this.choose(map);
       this.draw();
     }
+    this.focus(map.name);
     if (!map.movable) {
       this.say_fixed(map);
       this.draw();

@@ -666,6 +666,13 @@ test('what changes nothing is no step, and keeps what was undone', async (hand, 
   await page.evaluate(() => window.studio.change({ set: {} }));
   assert.ok(await page.isDisabled('#undo'));
   assert.ok(!(await page.isDisabled('#redo')));
+  await page.evaluate(() => {
+    window.studio.hold_view();
+    window.studio.change({ set: { lean: 2 } }, 'map left');
+  });
+  await hand.until(() => hand.last().camera !== null, 'the view is held');
+  await page.click('#whole');
+  await hand.until(() => hand.last().camera === null, 'the model chooses it again');
 });
 
 test('a map is turned about its foot, or about its middle; the stem stays on the box', async (hand, page) => {

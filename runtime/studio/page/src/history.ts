@@ -37,9 +37,9 @@ export class History {
     return this.at + 1 < this.entries.length;
   }
 
-  /** `key` null: a step of its own. `why` says who changed it, for listeners that know already. What changes nothing is no step. */
-  change(part: Partial<Choices>, key: string | null = null, why = ''): void {
-    if (Object.entries(part).every(([name, value]) => JSON.stringify(value) === JSON.stringify(this.now[name as keyof Choices]))) return;
+  /** `key` null: a step of its own. `why` says who changed it, for listeners that know already. False, and no step, where nothing changes. */
+  change(part: Partial<Choices>, key: string | null = null, why = ''): boolean {
+    if (Object.entries(part).every(([name, value]) => JSON.stringify(value) === JSON.stringify(this.now[name as keyof Choices]))) return false;
     const next = { ...this.now, ...part };
     const now_ms = performance.now();
     const soon = this.held || /#\d+$/.test(key ?? '') || now_ms - this.changed_ms < merge_ms;
@@ -57,6 +57,7 @@ export class History {
     this.key = key;
     this.changed_ms = now_ms;
     this.changed(why);
+    return true;
   }
 
   /** The pointer goes down: what it changes until it goes up is one step, however long it takes. */

@@ -128,8 +128,9 @@ class Page implements Studio, Listener {
   }
 
   change(part: Partial<Choices>, key: string | null = null): void {
-    if (!key || !hands_in_picture.test(key)) this.still = null;
-    this.history.change(part, key);
+    const lets_go = this.still !== null && (!key || !hands_in_picture.test(key));
+    if (lets_go) this.still = null;
+    if (!this.history.change(part, key) && lets_go) this.show();
   }
 
   edit(edits: Edit[], key: string | null = null): void {

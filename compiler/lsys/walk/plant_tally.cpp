@@ -7,6 +7,9 @@ namespace graftal {
 
 namespace {
 
+/// Most sums of all parts; each takes about 250 bytes.
+constexpr std::size_t most_sums = 1'000'000;
+
 template<typename Value> Value& at(std::vector<Value>& values, std::size_t number) {
     if (number >= values.size()) values.resize(number + 1);
     return values[number];
@@ -30,6 +33,7 @@ bool is_plant_part(TurtleCommand command) {
 }
 
 std::uint32_t PlantTally::closes_part() {
+    sum_count_ += open_.back().sums.size();
     parts_.push_back(std::move(open_.back()));
     open_.pop_back();
     return static_cast<std::uint32_t>(parts_.size() - 1);
@@ -63,6 +67,7 @@ PlantTally::Sums& PlantTally::add_row(SymbolId name, std::uint16_t material) {
 }
 
 bool PlantTally::begins(const Module& module, const Turtle&) {
+    if (sum_count_ > most_sums) return false;
     const TurtleCommand command = grammar_.commands[module.symbol];
     if (!(module.is_interpreted ? is_plant_part(command) : command == TurtleCommand::none)) return true;
     const Leaves before = axis().leaves;

@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "compiler/lower/plant_sums.h"
@@ -26,10 +25,11 @@ class PlantTally : public WordWitness {
     PlantTotals totals() const;
 
     bool sums() const override { return true; }
+    /// False, without an error, where the parts have more sums than there is memory for.
+    bool begins(const Module& module, const Turtle& turtle) override;
     void opens_part() override { open_.emplace_back().axes.emplace_back(); }
     std::uint32_t closes_part() override;
     void places(std::uint32_t part, double scale) override;
-    bool begins(const Module& module, const Turtle& turtle) override;
     void ends(const Turtle& turtle) override;
     void runs(SymbolId symbol, std::span<const double> parameters, const Turtle& turtle) override;
     void draws(const DrawnBody& body) override;
@@ -77,7 +77,8 @@ class PlantTally : public WordWitness {
     const LsysGrammar& grammar_;
     double steps_;
     std::vector<Part> parts_;
-    std::vector<Part> open_; ///< those under way; the first is the whole word
+    std::size_t sum_count_ = 0; ///< of parts_
+    std::vector<Part> open_;    ///< those under way; the first is the whole word
     std::vector<std::string> materials_;
     SymbolId running_ = 0; ///< the module that the turtle carries out
 };

@@ -143,5 +143,20 @@ TEST(PlantTotals, OfMoreThanRowsHaveRoomForAreExact) {
     EXPECT_EQ(json["orders"][2]["segments"], "39805618871632140");
 }
 
+/// Each part has a sum for each order below it.
+TEST(PlantTotals, OfParentsOfThousandsOfOrdersAreNotTold) {
+    const auto plant = [](int steps) {
+        return "lsys a {\n steps " + std::to_string(steps) + "\n width 0.1\n axiom A\n A -> F[A]A\n}\n";
+    };
+    EXPECT_TRUE(totals_of(plant(1000)));
+    PictureSession session("m.lsys");
+    session.edit(plant(3000));
+    Compilation compilation;
+    const PlantOrTotals told = plant_or_totals_of_model(session, {}, "no plant", compilation);
+    EXPECT_FALSE(told.plant || told.totals);
+    EXPECT_NE(compilation.diagnostics.render(compilation.sources).find("more than 5000000 modules"),
+              std::string::npos);
+}
+
 } // namespace
 } // namespace graftal

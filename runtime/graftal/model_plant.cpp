@@ -88,11 +88,8 @@ Result<PlantReport> Model::measures(const MeasureSettings& settings) {
             return std::nullopt;
         }
         const StageOptions& stages = parts_->options.compile;
-        const char* const else_error = "only L-systems have a plant that can be measured";
         const auto [plant, totals] =
-            settings.irradiance
-                ? PlantOrTotals{plant_of_model(parts_->session, stages, else_error, compilation), nullptr}
-                : plant_or_totals_of_model(parts_->session, stages, else_error, compilation);
+            plant_or_totals_of_model(parts_->session, stages, settings.irradiance, compilation);
         PlantReport report;
         if (totals) {
             report.json = totals_json(parts_->path, *totals, settings.ground_area);

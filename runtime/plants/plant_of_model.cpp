@@ -48,7 +48,8 @@ void warn_of_coinciding(const Plant& plant, Span span, Diagnostics& diagnostics)
         places.push_back(place);
     }
     std::ranges::sort(places);
-    const std::size_t coinciding = std::ranges::unique(places).size();
+    const auto coinciding =
+        static_cast<std::size_t>(places.end() - std::unique(places.begin(), places.end()));
     if (!(few * coinciding > places.size())) return;
     diagnostics
         .warning(span,
@@ -115,12 +116,13 @@ std::shared_ptr<const Plant> plant_of_model(Session& session, StageOptions stage
     return told_of_model(session, stages, LowerOptions::InPlace::plant, else_error, compilation).plant;
 }
 
-PlantOrTotals plant_or_totals_of_model(Session& session, StageOptions stages, std::string_view else_error,
+PlantOrTotals plant_or_totals_of_model(Session& session, StageOptions stages, bool needs_rows,
                                        Compilation& compilation) {
+    constexpr std::string_view else_error = "only L-systems have a plant that can be measured";
     Compilation of_rows = compilation, of_totals = compilation;
     const auto most_rows = std::min(most_told_modules, stages.lower.max_modules);
     PlantOrTotals told = told_of_model(session, stages, LowerOptions::InPlace::plant, else_error, of_rows);
-    if (!told.plant && of_rows.diagnostics.has_errors())
+    if (!needs_rows && !told.plant && of_rows.diagnostics.has_errors())
         told = told_of_model(session, stages, LowerOptions::InPlace::totals, else_error, of_totals);
     const bool too_many = told.totals && told.totals->all.modules > most_rows;
     if (!too_many) told.totals = nullptr;

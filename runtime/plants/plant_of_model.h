@@ -16,12 +16,13 @@ namespace graftal {
 std::shared_ptr<const Plant> plant_of_model(Session& session, StageOptions stages,
                                             std::string_view else_error, Compilation& compilation);
 
-/// A plant, or the totals of one that has too many modules for rows; both null after an error.
+/// A plant, or the totals of one that has too many modules for rows, unless that `needs_rows`; both null
+/// after an error.
 struct PlantOrTotals {
     std::shared_ptr<const Plant> plant;
     std::shared_ptr<const PlantTotals> totals;
 };
-PlantOrTotals plant_or_totals_of_model(Session& session, StageOptions stages, std::string_view else_error,
+PlantOrTotals plant_or_totals_of_model(Session& session, StageOptions stages, bool needs_rows,
                                        Compilation& compilation);
 
 /// Measures of that plant within the work of the stages; nothing after an error, or with a failed status

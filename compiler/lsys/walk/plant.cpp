@@ -67,7 +67,7 @@ void PlantBuilder::draws(const DrawnBody& body) {
     const double size = frame_.size;
     drawn.organ = body.organ;
     if (body.start) drawn.start = frame_.place(*body.start);
-    if (!body.material.empty()) drawn.material = material(body.material);
+    if (!body.material.empty()) drawn.material = number_of_material(plant_.materials, body.material);
     drawn.length = size * body.length;
     drawn.width = size * body.width;
     drawn.base_width = size * body.base_width;
@@ -166,13 +166,6 @@ std::uint16_t PlantBuilder::name_of_symbol(SymbolId symbol) {
     const auto [known, fresh] = names_.try_emplace(symbol, static_cast<std::uint16_t>(plant_.names.size()));
     if (fresh) plant_.names.push_back(grammar_.symbols[symbol]);
     return known->second;
-}
-
-std::uint16_t PlantBuilder::material(std::string_view name) {
-    const auto known = std::ranges::find(plant_.materials, name);
-    const auto number = static_cast<std::uint16_t>(known - plant_.materials.begin());
-    if (known == plant_.materials.end()) plant_.materials.emplace_back(name);
-    return number;
 }
 
 } // namespace graftal

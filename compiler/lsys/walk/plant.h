@@ -51,7 +51,6 @@ class PlantBuilder : public WordWitness {
     void add(PlantModule row);
     void end(PlantModule& row, const Turtle& turtle) const;
     std::uint16_t name_of_symbol(SymbolId symbol);
-    std::uint16_t material(std::string_view name);
 
     const LsysGrammar& grammar_;
     std::uint64_t most_rows_;

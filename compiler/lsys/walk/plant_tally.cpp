@@ -10,12 +10,14 @@ namespace {
 /// Most sums of all parts; each takes about 250 bytes.
 constexpr std::size_t most_sums = 1'000'000;
 
-template<typename Value> Value& at(std::vector<Value>& values, std::size_t number) {
-    if (number >= values.size()) values.resize(number + 1);
-    return values[number];
-}
-
 } // namespace
+
+std::uint16_t number_of_material(std::vector<std::string>& materials, std::string_view name) {
+    const auto known = std::ranges::find(materials, name);
+    const auto number = static_cast<std::uint16_t>(known - materials.begin());
+    if (known == materials.end()) materials.emplace_back(name);
+    return number;
+}
 
 bool is_plant_part(TurtleCommand command) {
     switch (command) {
@@ -99,7 +101,8 @@ void PlantTally::draws(const DrawnBody& body) {
         const auto begin = std::ranges::find(grammar_.commands, TurtleCommand::open_polygon);
         name = static_cast<SymbolId>(begin - grammar_.commands.begin());
     }
-    Sums& sums = add_row(name, body.material.empty() ? own_material : material(body.material));
+    Sums& sums =
+        add_row(name, body.material.empty() ? own_material : number_of_material(materials_, body.material));
     if (is_segment(body)) {
         sums.segments += 1;
         sums.length += body.length;
@@ -125,13 +128,6 @@ void PlantTally::closes_branch() {
     if (part().axes.size() > 1) part().axes.pop_back();
 }
 
-std::uint16_t PlantTally::material(std::string_view name) {
-    const auto known = std::ranges::find(materials_, name);
-    const auto number = static_cast<std::uint16_t>(known - materials_.begin());
-    if (known == materials_.end()) materials_.emplace_back(name);
-    return number;
-}
-
 PlantTotals PlantTally::totals() const {
     PlantTotals totals;
     totals.steps = steps_;
@@ -141,7 +137,8 @@ PlantTotals PlantTally::totals() const {
         totals.all += sums;
         totals.balls += sums.balls;
         totals.unmeasured += sums.unmeasured;
-        at(totals.orders, key.order) += sums;
+        totals.orders.resize(key.order + 1); // keys come by their orders
+        totals.orders.back() += sums;
         names[key.name] += sums;
         if (key.material != no_organ) materials[key.material] += sums;
     }

@@ -72,7 +72,6 @@ class PlantTally : public WordWitness {
     Part& part() { return open_.back(); }
     Axis& axis() { return open_.back().axes.back(); }
     Sums& add_row(SymbolId name, std::uint16_t material);
-    std::uint16_t material(std::string_view name);
 
     const LsysGrammar& grammar_;
     double steps_;
@@ -85,5 +84,8 @@ class PlantTally : public WordWitness {
 
 /// Whether a module is a part of the plant where others are drawn in its place.
 bool is_plant_part(TurtleCommand command);
+
+/// The number of a material among those that are drawn, which takes it up where it is new.
+std::uint16_t number_of_material(std::vector<std::string>& materials, std::string_view name);
 
 } // namespace graftal

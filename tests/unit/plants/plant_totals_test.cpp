@@ -20,7 +20,7 @@ PlantOrTotals told(PictureSession& session, std::uint64_t max_modules) {
     StageOptions options;
     options.lower.max_modules = max_modules;
     Compilation compilation;
-    return plant_or_totals_of_model(session, options, "no plant", compilation);
+    return plant_or_totals_of_model(session, options, false, compilation);
 }
 
 std::shared_ptr<const PlantTotals> totals_of(const std::string& text,
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
         "F[+~leaf(0.5)]/A\n}",
         "material m {\ncolor: 1,0,0\n}\nmaterial n { color: 0,1,0\n} "
         "lsys a {\ncolors m, n\nsteps 4\naxiom A\nA -> F[';FA]A@o(0.5)\n}",
-        // What is cut is in no sum.
+        // Modules that are cut off are in no sum.
         "lsys a {\nsteps 4\naxiom A\nA -> F[+F A F % FFF[F]]A\n}",
         "lsys a {\nsteps 3\naxiom A\nA -> F[+B]A\nB -> F%F\n}",
         // Chance, by the choices of the picture.
@@ -152,7 +152,7 @@ TEST(PlantTotals, OfParentsOfThousandsOfOrdersAreNotTold) {
     PictureSession session("m.lsys");
     session.edit(plant(3000));
     Compilation compilation;
-    const PlantOrTotals told = plant_or_totals_of_model(session, {}, "no plant", compilation);
+    const PlantOrTotals told = plant_or_totals_of_model(session, {}, false, compilation);
     EXPECT_FALSE(told.plant || told.totals);
     EXPECT_NE(compilation.diagnostics.render(compilation.sources).find("more than 5000000 modules"),
               std::string::npos);

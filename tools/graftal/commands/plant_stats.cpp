@@ -36,11 +36,8 @@ int run_plant_stats(const Options& options) {
     session.set_control(watched(interruption, bar));
     RenderOptions render = options.render;
     render.compile = inspecting(options, true);
-    const char* const else_error = "only L-systems have a plant that can be measured";
     const auto [plant, totals] =
-        options.irradiance
-            ? PlantOrTotals{plant_of_model(session, render.compile, else_error, compilation), nullptr}
-            : plant_or_totals_of_model(session, render.compile, else_error, compilation);
+        plant_or_totals_of_model(session, render.compile, options.irradiance, compilation);
     std::optional<PlantMeasures> measures;
     if (plant)
         measures = measures_of_model(session, render.compile, *plant, options.ground_area, compilation);

@@ -39,7 +39,8 @@ export class History {
 
   /** `key` null: a step of its own. `why` says who changed it, for listeners that know already. False, and no step, where nothing changes. */
   change(part: Partial<Choices>, key: string | null = null, why = ''): boolean {
-    if (Object.entries(part).every(([name, value]) => JSON.stringify(value) === JSON.stringify(this.now[name as keyof Choices]))) return false;
+    const is_now = (value: unknown, now: unknown) => value === now || (typeof value === 'object' && JSON.stringify(value) === JSON.stringify(now));
+    if (Object.entries(part).every(([name, value]) => is_now(value, this.now[name as keyof Choices]))) return false;
     const next = { ...this.now, ...part };
     const now_ms = performance.now();
     const soon = this.held || /#\d+$/.test(key ?? '') || now_ms - this.changed_ms < merge_ms;

@@ -27,7 +27,8 @@ class AttractorPrice {
           drawn_(static_cast<std::size_t>(target.width()) * static_cast<std::size_t>(target.height())),
           drawn_parts_(drawn_.size() * parts * parts), price_(drawn_.size()) {
         for (std::size_t cell = 0; cell < price_.size(); ++cell) {
-            const Vec2 p(static_cast<double>(cell % width_) + 0.5, static_cast<double>(cell / width_) + 0.5);
+            const std::size_t column = cell % width_, row = cell / width_;
+            const Vec2 p(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
             const Vec2 away = p - target.nearest(p);
             price_[cell] = static_cast<float>(0.9 + 0.1 * std::sqrt(away.x * away.x + away.y * away.y));
         }

@@ -23,6 +23,7 @@ struct Path {
 struct Spot {
     vec3 position, normal, facet, rgb;
     uint material;
+    float faded; // Hit's
 };
 
 struct Point {
@@ -85,7 +86,18 @@ void meet_level_at(float t, float height, uint material, INOUT(Hit) hit) {
     hit.is_level = true;
     hit.level = height;
     hit.pattern_size = 1.0f;
+    hit.faded = 0.0f;
     hit.tint = vec4(0.0f, 0.0f, 0.0f, 1.0f);
+}
+
+/// A material, with what the relief does that a surface has lost.
+Material material_at(uint number, float faded) {
+    Material material = material_of(number);
+    if (PATTERNS && faded > 0.0f) {
+        material.facing = facing_of_relief(faded);
+        roughen_by_relief(faded, material.specular, material.roughness, material.blur);
+    }
+    return material;
 }
 
 /// walk(), and the ground.
@@ -126,7 +138,8 @@ Spot spot_of(Path path, Hit hit, INOUT(Stream) stream) {
     spot.facet = spot.normal;
     spot.rgb = hit.rgb;
     spot.material = hit.material;
-    const Material material = material_of(hit.material);
+    spot.faded = hit.faded;
+    const Material material = material_at(hit.material, hit.faded);
     if (is_blurred(material))
         spot.facet = visible_facet(spot.normal, -path.direction, material.blur, next_place(stream));
     // Exactly on the ground, its own shadow cannot begin on the way to a low sun.
@@ -141,7 +154,7 @@ Point point_of(Path path, Spot spot) {
     point.facet = spot.facet;
     point.to_viewer = -path.direction;
     point.rgb = spot.rgb;
-    point.material = material_of(spot.material);
+    point.material = material_at(spot.material, spot.faded);
     share_light(path.inside, point);
     return point;
 }
@@ -152,11 +165,16 @@ vec3 start_at(Point point, vec3 direction) {
     return point.position + (dot(point.normal, direction) < 0.0f ? -off : off) * point.normal;
 }
 
+/// The share of a light that scatters to the viewer, without its colour. `cosine`: to the light, below 0 behind.
+float scattered_to_viewer(Material material, float cosine) {
+    return (cosine < 0.0f ? material.translucency : material.diffuse) * lit_cosine(abs(cosine), material.facing);
+}
+
 vec3 shine(Point point, vec3 to_light) {
     if (!(point.material.specular > 0.0f)) return vec3(0.0f);
     const vec3 halfway = point.to_viewer + to_light;
     const float glint = dot(halfway, point.normal) / length(halfway);
-    const float exponent = 1.0f / max(point.material.roughness, 5e-4f);
+    const float exponent = 1.0f / point.material.roughness;
     if (!(glint > 0.0f && exponent * (1.0f - glint) < 40.0f)) return vec3(0.0f);
     const float share = point.material.specular * pow(glint, exponent);
     if (!(point.material.metallic > 0.0f)) return vec3(share);
@@ -199,8 +217,7 @@ ToLight to_lamp(uint number, Point point, float least, INOUT(Stream) stream) {
     to.sure = shadowless;
     const float cosine = dot(point.normal, to.direction);
     const bool behind = cosine < 0.0f;
-    vec3 share =
-        point.body * (behind ? -point.material.translucency : point.material.diffuse) * cosine * point.rgb;
+    vec3 share = point.body * scattered_to_viewer(point.material, cosine) * point.rgb;
     if (!shadowless && !behind) share += shine(point, to.direction);
     // Also if the cosine is not a number, as of a light that lies on the surface.
     const bool any = abs(cosine) >= LEAST_COSINE && largest_of(share) > 0.0f;
@@ -227,7 +244,7 @@ ToLight to_sky(bool by_brightness, Point point, bool shine_only, INOUT(Stream) s
     const float along = dot(point.normal, to.direction);
     if (!(abs(along) >= LEAST_COSINE)) return to;
     const bool behind = along < 0.0f;
-    vec3 share = body * (behind ? -point.material.translucency : point.material.diffuse) * along * point.rgb;
+    vec3 share = body * scattered_to_viewer(point.material, along) * point.rgb;
     if (!behind && shines) share += shine(point, to.direction);
     if (!(largest_of(share) > 0.0f)) return to;
     float density_pi = sky_choice_density_pi(front_chance, shines, along);
@@ -301,7 +318,7 @@ bool goes_on(INOUT(Path) path, Point point, float scattered, bool sky_later, INO
             path.counts *= scattered / scatter_chance;
             path.takes_sky = sky_later;
             const float through = point.material.translucency, diffuse = point.material.diffuse + through;
-            path.weight *= point.body * diffuse / scatter_chance * point.rgb;
+            path.weight *= point.body * diffuse * lit_from_all_sides(point.material.facing) / scatter_chance * point.rgb;
             const vec3 pole = chosen.y * diffuse < through ? -point.normal : point.normal;
             path.direction = cosine_direction(pole, next_place(stream));
             path.origin = start_at(point, path.direction);
@@ -375,6 +392,7 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
     spot.position = o;
     spot.normal = spot.facet = spot.rgb = -d;
     spot.material = 0u;
+    spot.faded = 0.0f;
     float caught = 0.0f;
     uint source = sources;
     // The ray to a light.
@@ -443,7 +461,7 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
         const Point point = point_of(path, spot);
         const float scattered = path.bounces < bounces && !(caught > 0.0f)
                                     ? point.body * (point.material.diffuse + point.material.translucency) *
-                                          largest_of(point.rgb)
+                                          lit_from_all_sides(point.material.facing) * largest_of(point.rgb)
                                     : 0.0f;
         const bool sky_later = !has_bright_sky() && path.counts * scattered >= scene.limits.y;
         const float shadow_least = least_distance(point.position, SHADOW_PIXELS);

@@ -6,6 +6,7 @@ struct Material {
     vec3 rgb;
     float ambient, diffuse, specular, roughness, reflection, translucency, emission, metallic, transparency;
     float filtering, ior, blur;
+    float facing; // facing_of_relief()
     vec3 absorbed; // optical depth of a unit of length within
 };
 
@@ -18,7 +19,7 @@ Material material_of(uint number) {
     material.ambient = a.w;
     material.diffuse = b.x;
     material.specular = b.y;
-    material.roughness = b.z;
+    material.roughness = max(b.z, 5e-4f); // the least that is emitted
     material.reflection = b.w;
     material.translucency = c.x;
     material.emission = c.y;
@@ -27,6 +28,7 @@ Material material_of(uint number) {
     material.filtering = d.x;
     material.ior = d.y;
     material.blur = d.z;
+    material.facing = 1.0f;
     material.absorbed = xyz_of(e);
     return material;
 }

@@ -10,6 +10,7 @@ struct Hit {
     bool is_level; // it lies exactly at this height
     float level;
     float pattern_size; // of the part, for a pattern of its material; 0: shows none
+    float faded;        // mean square slope, along one axis, of a relief too fine to be seen
     vec4 tint;          // in front of its own colour, with the share that is open to that
 };
 

@@ -23,7 +23,7 @@ void show_pattern(vec3 o, vec3 d, INOUT(Hit) hit) {
     const vec3 from_eye = o + hit.t * d;
     float footprint;
     if (hit.is_level) {
-        footprint = least_distance(from_eye, 1.0f) / max(abs(d.y), 1e-3f);
+        footprint = least_distance(from_eye, 1.0f) / sqrt(max(abs(d.y), 1e-3f));
     } else if (scene.direction.w > 0.0f) {
         footprint = scene.lens.z;
     } else {
@@ -33,21 +33,25 @@ void show_pattern(vec3 o, vec3 d, INOUT(Hit) hit) {
     const vec3 place = from_eye + xyz_of(scene.eye);
     float value = 0.5f;
     vec3 relief = vec3(0.0f);
+    float faded = 0.0f;
     uint at = pattern + PATTERN_SIZE;
     for (uint i = 0u; i < uint(texels(pattern)); ++i) {
         const float wavelength = texels(at + 3u) * (texels(at + 4u) > 0.0f ? 1.0f : hit.pattern_size);
         const vec3 stretch = three_texels(at + 5u);
         const float share = texels(at + 8u);
         vec3 slope;
+        float lost;
         const float layer = pattern_layer(int(texels(at)), int(texels(at + 1u)), texels(at + 2u), wavelength,
-                                          footprint, place / stretch, slope);
+                                          footprint, stretch, place, slope, lost);
         value = mix(value, layer, share);
-        relief = mix(relief, wavelength * (slope / stretch), share);
+        relief = mix(relief, wavelength * slope, share);
+        faded = squared(1.0f - share) * faded + squared(share * wavelength) * lost;
         at += LAYER_SIZE;
     }
     const float bump = texels(pattern + 1u);
     if (dot(hit.normal, d) > 0.0f) hit.normal = -hit.normal;
     if (bump != 0.0f) hit.normal = pattern_normal(hit.normal, bump * relief, d);
+    hit.faded = bump * bump * faded;
     const vec3 own = xyz_of(materials(hit.material * MATERIAL_SIZE));
     const vec3 shown = value < 0.5f ? mix(three_texels(pattern + 2u), own, 2.0f * value)
                                     : mix(own, three_texels(pattern + 5u), 2.0f * value - 1.0f);

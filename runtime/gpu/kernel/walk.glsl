@@ -16,6 +16,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
     uint visits = 0u;
     hit.t = most;
     hit.pattern_size = 0.0f;
+    hit.faded = 0.0f;
     Meeting meeting;
     Frame frame;
     frame.origin = origin;

@@ -99,6 +99,36 @@ FORMULA real unhidden(real cosine, real blur) {
     return REAL(2) * cosine / (cosine + sqrt(square + (REAL(1) - square) * cosine * cosine));
 }
 
+/// The mean cosine between a surface and its parts, where a relief too fine to be seen tilts them: `faded` is
+/// the mean square of its slope along one axis. About that of a normal distribution (small: 1 - faded; large:
+/// 0.53 over the slope).
+FORMULA real facing_of_relief(real faded) {
+    return inversesqrt(REAL(1) + faded * (REAL(2) + REAL(1.53) * faded / (REAL(1) + faded)));
+}
+
+/// The mean cosine towards a light of the parts of a surface, in place of that of the whole, which is not negative.
+/// Parts that face away count as 0. `facing`: facing_of_relief(), 1 where there is no relief. It is about the mean of
+/// max(0, x) in a normal distribution about facing * cosine, whose variance is a third of what `facing` leaves.
+FORMULA real lit_cosine(real cosine, real facing) {
+    const real middle = facing * cosine;
+    const real spread = REAL(2) / (REAL(3) * PI) * (REAL(1) - facing * facing);
+    return REAL(0.5) * (middle + sqrt(middle * middle + spread));
+}
+
+/// The light from all sides of such a surface over that of an even one: the mean of lit_cosine(), about.
+FORMULA real lit_from_all_sides(real facing) {
+    return REAL(0.5) * (facing + sqrt(facing * facing + REAL(8) / (REAL(3) * PI) * (REAL(1) - facing * facing)));
+}
+
+/// Gives the numbers of a material what a relief does that is too fine to be seen: its slopes spread highlights
+/// and mirrored rays. `faded`: the mean square of the slopes along one axis.
+FORMULA void roughen_by_relief(real faded, INOUT(real) specular, INOUT(real) roughness, INOUT(real) blur) {
+    // A highlight of exponent 1 / r is as wide as slopes of the mean square r; one twice as wide is half as bright.
+    specular *= roughness / (roughness + faded);
+    roughness += faded;
+    blur = min(REAL(1), sqrt(blur * blur + REAL(2) * faded));
+}
+
 // Sample sequences: Sobol's first two dimensions, scrambled (Owen; Laine and Karras 2011).
 
 FORMULA uint bits_reversed(uint bits) {

@@ -15,8 +15,6 @@ namespace {
 
 /// Most surfaces one behind the other before a light: more are as good as a wall.
 constexpr int most_panes = 1000;
-/// The least roughness that is emitted (povray/emit/textures.cpp).
-constexpr double least_roughness = 5e-4;
 /// e to the minus this is nothing, even of the brightest light.
 constexpr double dark_exponent = 40;
 
@@ -64,13 +62,12 @@ Shader::Lamp Shader::part_of(const Area& area, SampleStream& random) {
 
 /// `shine_only`: without what is scattered.
 Rgb Shader::from_sky(const Point& point, double least, bool shine_only, SampleStream& random) {
-    const Material& material = *point.material;
     const double body = shine_only ? 0 : point.body;
-    const double front = body * material.diffuse + material.specular;
-    const double back = body * material.translucency;
+    const double front = body * point.material->diffuse + point.specular;
+    const double back = body * point.material->translucency;
     if (!(front + back > 0)) return Rgb(0.0);
     const double front_chance = front / (front + back);
-    const bool shines = material.specular > 0;
+    const bool shines = point.specular > 0;
     Rgb light = sky_light(front_chance, point, body,
                           formulas::sky_choice(front_chance, shines, point.normal, random.next()), least);
     if (bright_sky_)
@@ -81,12 +78,11 @@ Rgb Shader::from_sky(const Point& point, double least, bool shine_only, SampleSt
 
 /// Light of the sky in one direction, over its density by the strategies that may have chosen it.
 Rgb Shader::sky_light(double front_chance, const Point& point, double body, Vec3 direction, double least) {
-    const Material& material = *point.material;
-    const bool shines = material.specular > 0;
+    const bool shines = point.specular > 0;
     const double along = glm::dot(point.normal, direction);
     if (!(std::abs(along) >= least_cosine)) return Rgb(0.0);
     const bool behind = along < 0;
-    Rgb share = body * (behind ? -material.translucency : material.diffuse) * along * point.rgb;
+    Rgb share = body * scattered(point, along) * point.rgb;
     if (!behind && shines) share += shine(point, direction);
     if (!(largest(share) > 0)) return Rgb(0.0);
     const Rgb light = sky_->radiance(direction);
@@ -99,22 +95,28 @@ Rgb Shader::sky_light(double front_chance, const Point& point, double body, Vec3
     return share / density_pi * light * light_through({from, direction}, {least}, *point.inside);
 }
 
+/// The share of a light that scatters to the viewer, without its colour. `cosine`: to the light, below 0 behind.
+double Shader::scattered(const Point& point, double cosine) {
+    const Material& material = *point.material;
+    return (cosine < 0 ? material.translucency : material.diffuse) *
+           formulas::lit_cosine(std::abs(cosine), point.facing);
+}
+
 /// The specular share of a light from there.
 Rgb Shader::shine(const Point& point, Vec3 to_light) const {
-    const Material& material = *point.material;
-    if (!(material.specular > 0)) return Rgb(0.0);
+    if (!(point.specular > 0)) return Rgb(0.0);
     const Vec3 halfway = point.to_viewer + to_light;
     const double glint = glm::dot(halfway, point.normal) / glm::length(halfway);
-    const double exponent = 1 / std::max(material.roughness, least_roughness);
+    const double exponent = 1 / point.roughness;
     // x^n <= e^(n (x - 1)): most points are far from any highlight.
     if (!(glint > 0 && exponent * (1 - glint) < dark_exponent)) return Rgb(0.0);
-    const double share = material.specular * std::pow(glint, exponent);
-    if (!(material.metallic > 0)) return Rgb(share);
-    return share * formulas::metal_colour(material.metallic, point.rgb, glm::dot(to_light, point.normal));
+    const double share = point.specular * std::pow(glint, exponent);
+    const double metallic = point.material->metallic;
+    if (!(metallic > 0)) return Rgb(share);
+    return share * formulas::metal_colour(metallic, point.rgb, glm::dot(to_light, point.normal));
 }
 
 Rgb Shader::light_of(const Lamp& lamp, const Point& point, double least) {
-    const Material& material = *point.material;
     Ray to_light{point.position, lamp.at};
     RayRange range{least};
     if (!lamp.sun) {
@@ -127,7 +129,7 @@ Rgb Shader::light_of(const Lamp& lamp, const Point& point, double least) {
     // Also if the cosine is not a number, as of a light that lies on the surface.
     if (!(std::abs(cosine) >= least_cosine)) return Rgb(0.0);
     const bool behind = cosine < 0;
-    Rgb share = point.body * (behind ? -material.translucency : material.diffuse) * cosine * point.rgb;
+    Rgb share = point.body * scattered(point, cosine) * point.rgb;
     if (!lamp.shadowless && !behind) share += shine(point, to_light.direction);
     if (!(largest(share) > 0)) return Rgb(0.0);
     if (behind) to_light.origin = point.far_side;

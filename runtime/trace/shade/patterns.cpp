@@ -26,11 +26,15 @@ PatternValue pattern_at(const SolidPattern& pattern, double size, double footpri
     for (const PatternLayer& layer : pattern.layers) {
         const double wavelength = wavelength_of(layer, size);
         Vec3 slope;
+        double faded = 0;
         const double value =
             formulas::pattern_layer(static_cast<int>(layer.kind), static_cast<int>(layer.octaves), layer.warp,
-                                    wavelength, footprint, world / layer.stretch, slope);
+                                    wavelength, footprint, layer.stretch, world, slope, faded);
         sum.value = glm::mix(sum.value, value, layer.share);
-        sum.relief = glm::mix(sum.relief, relief_depth * wavelength * (slope / layer.stretch), layer.share);
+        const double depth = relief_depth * wavelength;
+        sum.relief = glm::mix(sum.relief, depth * slope, layer.share);
+        sum.faded = (1 - layer.share) * (1 - layer.share) * sum.faded +
+                    layer.share * layer.share * depth * depth * faded;
     }
     return sum;
 }

@@ -76,6 +76,21 @@ FORMULA real pattern_octave(int kind, int level, vec3 x, OUT(vec3) slope) {
     return root2 * cosine;
 }
 
+/// The share of its waves' length that an octave's finest detail has: the cracks of cells are narrow.
+FORMULA real pattern_finest(int kind) {
+    return kind == 2 ? REAL(0.35) : REAL(1);
+}
+
+/// The mean of an octave.
+FORMULA real pattern_mean(int kind) {
+    return kind == 2 ? REAL(-0.127) : REAL(0);
+}
+
+/// The mean square of an octave's slope, where the frequency is 1.
+FORMULA real pattern_steepness(int kind) {
+    return kind == 1 ? REAL(2.56) : kind == 2 ? REAL(8) : REAL(1);
+}
+
 /// The level before the longest wave: of it, so much is left, and of the next one the rest.
 FORMULA real pattern_first_level(real wavelength, OUT(int) level) {
     const real exact = -log2(wavelength);
@@ -127,18 +142,20 @@ FORMULA vec3 pattern_warped(real warp, real wavelength, vec3 x, OUT(vec3) turned
     return moved;
 }
 
-/// The value of a layer, in (0, 1), at a place whose stretch is taken back. Octaves finer than `footprint`,
-/// the length that a sample stands for there, fade out. `slope`: its gradient.
-FORMULA real pattern_layer(int kind, int octaves, real warp, real wavelength, real footprint, vec3 place,
-                           OUT(vec3) slope) {
+/// The value of a layer, in (0, 1), at a place. Octaves finer than `footprint`,
+/// the length that a sample stands for there, fade out. `slope`: its gradient. `faded`: the mean square of
+/// the slope that has faded, along one axis.
+FORMULA real pattern_layer(int kind, int octaves, real warp, real wavelength, real footprint, vec3 stretch,
+                           vec3 place, OUT(vec3) slope, OUT(real) faded) {
     vec3 turned_x;
     vec3 turned_y;
     vec3 turned_z;
-    const vec3 x = pattern_warped(warp, wavelength, place, turned_x, turned_y, turned_z);
+    const vec3 x = pattern_warped(warp, wavelength, place / stretch, turned_x, turned_y, turned_z);
     int first = 0;
     const real left = pattern_first_level(wavelength, first);
     real sum = REAL(0);
     real power = REAL(0);
+    faded = REAL(0);
     vec3 steep = vec3(REAL(0));
     for (int i = 0; i <= octaves; ++i) {
         // Octaves come and go gradually, so that parts of about one size look alike.
@@ -146,8 +163,12 @@ FORMULA real pattern_layer(int kind, int octaves, real warp, real wavelength, re
         real weight = depth < REAL(0) ? left : exp2(-depth);
         if (i == octaves) weight *= REAL(1) - left;
         power += weight * weight;
-        const real length = exp2(real(-first - i));
-        weight *= clamp(length / max(footprint, length * REAL(1e-3)) - REAL(1), REAL(0), REAL(1));
+        const real frequency = REAL(2) * PI * exp2(real(first + i));
+        const real fine = pattern_finest(kind) * exp2(real(-first - i));
+        const real whole = weight;
+        weight *= clamp(fine / max(footprint, fine * REAL(1e-3)) - REAL(1), REAL(0), REAL(1));
+        sum += (whole - weight) * pattern_mean(kind);
+        faded += (whole * whole - weight * weight) * squared(frequency) * pattern_steepness(kind);
         if (!(weight > REAL(0))) continue;
         vec3 here;
         sum += weight * pattern_octave(kind, first + i, x, here);
@@ -156,7 +177,14 @@ FORMULA real pattern_layer(int kind, int octaves, real warp, real wavelength, re
     const real scale = inversesqrt(power);
     sum *= scale;
     steep *= scale;
-    slope = steep.x * turned_x + steep.y * turned_y + steep.z * turned_z;
+    // A slope keeps its axes, and what warps it adds some along all; the last line flattens it to this mean square.
+    const vec3 squeezed = vec3(REAL(1)) / (stretch * stretch);
+    const real even = (squeezed.x + squeezed.y + squeezed.z) / REAL(3);
+    const real own = kind == 3 ? squeezed.y : kind == 4 ? REAL(0.5) * (squeezed.x + squeezed.z) : even;
+    const real turned = (dot(turned_x, turned_x) + dot(turned_y, turned_y) + dot(turned_z, turned_z)) / REAL(3);
+    const real flattened = REAL(0.104);
+    faded *= scale * scale * flattened * (own + (turned - REAL(1)) * even) / REAL(3);
+    slope = (steep.x * turned_x + steep.y * turned_y + steep.z * turned_z) / stretch;
     const real root = inversesqrt(REAL(1) + sum * sum);
     slope *= REAL(0.5) * root * root * root;
     return REAL(0.5) + REAL(0.5) * sum * root;

@@ -9,6 +9,8 @@ struct PatternValue {
     double value = 0.5; ///< in (0, 1)
     /// Gradient of the relief of bump 1, in lengths per length.
     Vec3 relief{0.0};
+    /// Mean square along one axis of the relief that is finer than the footprint, and not in `relief`.
+    double faded = 0;
 };
 
 /// `size`: pattern_size() of the part. `footprint`: the length in the world that a sample stands for there.

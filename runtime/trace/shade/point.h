@@ -14,6 +14,8 @@ inline constexpr double least_light = 1e-10;
 /// Distance from their start within which rays meet nothing, in pixels. Where two surfaces touch, light
 /// leaks through so narrow a gap.
 inline constexpr double shadow_pixels = 1e-3;
+/// The least roughness that is emitted (povray/emit/textures.cpp).
+inline constexpr double least_roughness = 5e-4;
 
 /// White light after its way through a surface.
 inline Rgb colour_of_pane(const Material& material, Rgb rgb) {
@@ -33,6 +35,8 @@ struct Shader::Point {
     Vec3 to_viewer;
     Rgb rgb;
     const Material* material;
+    double specular, roughness, blur; ///< the material's, with what a relief too fine to be seen does
+    double facing = 1;                ///< facing_of_relief() of that
     const Inside* inside; ///< on the viewer's side
     Rgb mirrored{0.0};    ///< share of light that is
     double mirrors = 0;   ///< how much that counts

@@ -1,5 +1,4 @@
 #include "runtime/trace/shade/shade.h"
-#include "runtime/trace/shade/patterns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -250,9 +249,9 @@ bool Shader::goes_on(Path& path, const Point& point, double scattered, bool sky_
             pane.direction = (ratio * along - std::sqrt(square)) * point.facet - ratio * point.to_viewer;
         }
     }
-    if (is_blurred(material)) {
-        mirror.roughen(point.normal, material.blur);
-        pane.roughen(-point.normal, material.blur);
+    if (point.blur > 0) {
+        mirror.roughen(point.normal, point.blur);
+        pane.roughen(-point.normal, point.blur);
     }
     if (scattered > 0 || (path.bounces > 0 && mirror.counts > 0 && pane.counts > 0)) {
         const glm::dvec2 choice = random.next();
@@ -286,13 +285,14 @@ bool Shader::goes_on(Path& path, const Point& point, double scattered, bool sky_
 
 double Shader::scattered_by(const Point& point) {
     return point.shone_on * point.body * (point.material->diffuse + point.material->translucency) *
-           largest(point.rgb);
+           formulas::lit_from_all_sides(point.facing) * largest(point.rgb);
 }
 
 /// Scatters a path by the cosine, to either side. `choice`: of the side, in [0, 1).
 bool Shader::scatter(Path& path, const Point& point, double choice, SampleStream& random) const {
     const double through = point.material->translucency, diffuse = point.material->diffuse + through;
-    path.weight *= point.shone_on * point.body * diffuse * point.rgb;
+    path.weight *=
+        point.shone_on * point.body * diffuse * formulas::lit_from_all_sides(point.facing) * point.rgb;
     const bool passes = choice * diffuse < through;
     path.ray = {passes ? point.far_side : point.position,
                 formulas::cosine_direction(passes ? -point.normal : point.normal, random.next())};
@@ -321,13 +321,14 @@ bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit, const Know
     if (view_.ground->material.pattern) {
         const Material& material = view_.ground->material;
         const Vec3 place = ray(t);
-        // A pixel that looks along the ground sees a long piece of it.
-        const double footprint = least_distance(place, 1) / std::max(std::abs(ray.direction.y), 1e-3);
+        // A pixel that looks along the ground sees a long, narrow piece of it: a square of its area counts.
+        const double footprint = least_distance(place, 1) / std::sqrt(std::max(std::abs(ray.direction.y), 1e-3));
         const PatternValue at = pattern_at(material.pattern, 1, footprint, place);
         work_ += RayWork::pattern_wave * material.pattern.waves();
         hit.rgb = pattern_colour(material.pattern, material.rgb, at.value);
         if (ray.direction.y > 0) hit.normal = -hit.normal;
         hit.normal = bumped(hit.normal, at.relief, material.pattern.bump, ray.direction);
+        hit.faded = material.pattern.bump * material.pattern.bump * at.faded;
     }
     if (ground_texture_) {
         const auto& srgb = ground_texel(ray(t)).srgb;
@@ -361,17 +362,28 @@ const Texture::Texel& Shader::ground_texel(Vec3 point) const {
     return ground_texture_->at(place.x, place.y);
 }
 
-bool Shader::is_blurred(const Material& material) const {
-    return material.is_blurred() && !limits_.list;
-}
-
 Shader::Point Shader::point_of(const Ray& ray, const Inside& inside, const SurfaceHit& hit,
                                SampleStream& random) const {
     Vec3 normal = hit.normal;
     if (glm::dot(hit.normal, ray.direction) > 0) normal = -hit.normal;
-    Point point{ray(hit.t), normal, normal, -ray.direction, hit.rgb, hit.material, &inside};
-    if (is_blurred(*hit.material))
-        point.facet = formulas::visible_facet(normal, point.to_viewer, hit.material->blur, random.next());
+    const Material& material = *hit.material;
+    Point point{.position = ray(hit.t),
+                .normal = normal,
+                .facet = normal,
+                .to_viewer = -ray.direction,
+                .rgb = hit.rgb,
+                .material = &material,
+                .specular = material.specular,
+                .roughness = std::max(material.roughness, least_roughness),
+                .blur = material.blur,
+                .inside = &inside};
+    if (hit.faded > 0) {
+        point.facing = formulas::facing_of_relief(hit.faded);
+        formulas::roughen_by_relief(hit.faded, point.specular, point.roughness, point.blur);
+    }
+    if (limits_.list || !(material.reflection > 0 || material.is_transparent())) point.blur = 0;
+    if (point.blur > 0)
+        point.facet = formulas::visible_facet(normal, point.to_viewer, point.blur, random.next());
     // Exactly on the ground, its own shadow cannot begin on the way to a low sun.
     if (view_.ground && hit.material == &view_.ground->material) point.position.y = view_.ground->height;
     if (hit.material == &catcher_paper_) point.position.y = view_.catcher->centre.y;

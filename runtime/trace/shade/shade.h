@@ -129,7 +129,6 @@ class Shader {
     double meet_catcher(const Ray& ray, const RayRange& range, SurfaceHit& hit) const;
     const Texture::Texel& ground_texel(Vec3 point) const;
     /// Whether the surface mirrors and refracts by facets: of the list of lights, POV-Ray's are sharp.
-    bool is_blurred(const Material& material) const;
     Point point_of(const Ray& ray, const Inside& inside, const SurfaceHit& hit, SampleStream& random) const;
     void share_light(Point& point) const;
     Rgb of_lamps(const Point& point, double least, SampleStream& random);
@@ -137,6 +136,7 @@ class Shader {
     Rgb from_sky(const Point& point, double least, bool shine_only, SampleStream& random);
     Rgb sky_light(double front_chance, const Point& point, double body, Vec3 direction, double least);
     Rgb shine(const Point& point, Vec3 to_light) const;
+    static double scattered(const Point& point, double cosine);
     Rgb follow(Path& path, SampleStream& random, SurfaceHit* first = nullptr, const Known* known = nullptr);
     static double scattered_by(const Point& point);
     bool goes_on(Path& path, const Point& point, double scattered, bool sky_later, SampleStream& random);

@@ -17,6 +17,7 @@ struct SurfaceHit {
     Rgb rgb{0.8};                       ///< opaque, all tints in front
     const Material* material = nullptr; ///< its finish; its rgb does not count
     double light_share = 1;             ///< share of the light on it, less its own shade (self_shadow.h)
+    double faded = 0; ///< mean square slope, along one axis, of a relief too fine to be seen (patterns.h)
     /// The way through a solid as thin as a sheet, to its far side: light that comes through goes on there. 0
     /// of other surfaces, and of what is not translucent.
     Vec3 to_far_side{0.0};

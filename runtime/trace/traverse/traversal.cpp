@@ -299,24 +299,26 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
     hit.t = best_.t;
     hit.normal = best_.inverted ? -normal_at_best() : normal_at_best();
     hit.light_share = light_share_at_best();
+    hit.faded = 0;
     hit.to_far_side = hit.material->translucency > 0 ? to_far_side_at_best() : Vec3(0.0);
     if (best_.proxy_node == no_edge && !best_.mesh_colour && hit.material->pattern) {
         const double size = part_size(primitive_at_best(), best_.world_from_leaf.affine().linear);
-        inherited = pattern_at_best(*hit.material, pattern_size(size), hit.normal);
+        inherited = pattern_at_best(pattern_size(size), hit);
     }
     hit.rgb = tint.over(inherited);
 }
 
 /// The colour that the material's pattern has where the ray meets it. Its relief tilts the normal.
-Rgb Traversal::pattern_at_best(const Material& material, double size, Vec3& normal) const {
+Rgb Traversal::pattern_at_best(double size, SurfaceHit& hit) const {
     const Vec3 place = ray_(best_.t);
-    const PatternValue at =
-        pattern_at(material.pattern, size, 1 / model_.projection.pixels_per_unit({place, 0}), place);
-    if (material.pattern.bump != 0) {
-        if (glm::dot(normal, ray_.direction) > 0) normal = -normal;
-        normal = bumped(normal, at.relief, material.pattern.bump, glm::normalize(ray_.direction));
+    const SolidPattern& pattern = hit.material->pattern;
+    const PatternValue at = pattern_at(pattern, size, 1 / model_.projection.pixels_per_unit({place, 0}), place);
+    if (pattern.bump != 0) {
+        if (glm::dot(hit.normal, ray_.direction) > 0) hit.normal = -hit.normal;
+        hit.normal = bumped(hit.normal, at.relief, pattern.bump, glm::normalize(ray_.direction));
+        hit.faded = pattern.bump * pattern.bump * at.faded;
     }
-    return pattern_colour(material.pattern, material.rgb, at.value);
+    return pattern_colour(pattern, hit.material->rgb, at.value);
 }
 
 } // namespace graftal

@@ -288,7 +288,7 @@ class Traversal final : public Surfaces {
     Vec3 normal_at_best() const;
     const Primitive& primitive_at_best() const; ///< unless a proxy or a shell was met
     Vec3 to_far_side_at_best() const;           ///< SurfaceHit's
-    Rgb pattern_at_best(const Material& material, double size, Vec3& normal) const;
+    Rgb pattern_at_best(double size, SurfaceHit& hit) const;
     double light_share_at_best() const;
     /// The material that an edge gives, the nearest to its child if it stands for several.
     std::optional<MaterialId> material_of(std::uint32_t edge) const;

@@ -114,6 +114,30 @@ TEST(Patterns, WhatIsFinerThanASampleFadesOut) {
     EXPECT_EQ(variation(10), 0);
 }
 
+TEST(Patterns, SlopesThatFadeAreKeptAsTheirMeanSquare) {
+    std::mt19937_64 random(6);
+    for (const PatternKind kind : kinds)
+        for (const double warp : {0.0, 0.8})
+            for (const double footprint : {0.05, 0.15, 10.0}) {
+                SCOPED_TRACE(testing::Message()
+                             << static_cast<int>(kind) << " warp " << warp << " footprint " << footprint);
+                SolidPattern pattern = pattern_of(kind, warp);
+                pattern.layers.push_back({.kind = kind, .scale = 0.4, .octaves = 2, .share = 0.3});
+                double whole = 0, seen = 0, faded = 0, before = 0;
+                for (int i = 0; i < 20'000; ++i) {
+                    const Vec3 at = place_in(random);
+                    const PatternValue fine = pattern_at(pattern, 1, 0, at);
+                    const PatternValue coarse = pattern_at(pattern, 1, footprint, at);
+                    whole += glm::dot(fine.relief, fine.relief);
+                    seen += glm::dot(coarse.relief, coarse.relief);
+                    faded += 3 * coarse.faded;
+                    before += fine.faded;
+                }
+                EXPECT_EQ(before, 0);
+                EXPECT_NEAR((seen + faded) / whole, 1, 0.4);
+            }
+}
+
 TEST(Patterns, PartsOfAboutOneSizeLookAlike) {
     std::mt19937_64 random(4);
     const SolidPattern pattern = pattern_of(PatternKind::noise);

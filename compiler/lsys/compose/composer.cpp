@@ -112,8 +112,8 @@ bool LsysComposer::run_tasks() {
         if (depth == 1) return true;
         if (FoldedWord::is_piece(tasks_.back().module))
             complete_piece();
-        else
-            complete_task();
+        else if (!complete_task())
+            return false;
         if (!tasks_.back().turtle.within_limits(tasks_.back().span)) return false;
     }
 }
@@ -251,7 +251,7 @@ bool LsysComposer::advance(Task& task) {
         const TurtlePart* part = known_part(found.module, stage, found.state);
         if (!part) return start_task(found, stage, unfolded);
         if (stage > 0) ++served_;
-        append(task, *part, found.placing, unfolded.kind == RuleKind::interpret);
+        if (!append(task, *part, found.placing, unfolded.kind == RuleKind::interpret)) return false;
         if (!task.turtle.within_limits(task.span)) return false;
     }
     return true;
@@ -262,12 +262,13 @@ const TurtlePart* LsysComposer::known_part(ModuleId module, Stage stage, const T
     return witness_ && !sums_ ? nullptr : parts_.find(module, stage, state);
 }
 
-/// Places a part, of which a witness has heard, or hears now.
-void LsysComposer::append(Task& parent, const TurtlePart& part, const Placing& placing, bool interprets) {
+/// Places a part, of which a witness has heard, or hears now. False where that ends it.
+bool LsysComposer::append(Task& parent, const TurtlePart& part, const Placing& placing, bool interprets) {
     if (witness_) witness_->enter(parent.frame);
-    if (sums_) witness_->places(part.sums, placing.scale * parent.turtle.scale());
+    if (sums_ && !witness_->places(part.sums, placing.scale * parent.turtle.scale())) return false;
     parent.turtle.append(part, parent.span, placing);
     if (witness_ && interprets && !parent.interprets) witness_->ends(parent.turtle);
+    return true;
 }
 
 /// False if its part is missing, whose task is then the last.
@@ -416,8 +417,8 @@ bool LsysComposer::start_task(const Lookup& found, Stage stage, const Unfolded& 
     return true;
 }
 
-/// Makes the last task a known part.
-void LsysComposer::complete_task() {
+/// Makes the last task a known part. False where a witness ends it.
+bool LsysComposer::complete_task() {
     Task task = std::move(tasks_.back());
     tasks_.pop_back();
     TurtlePart part = std::move(task.turtle).finish();
@@ -426,10 +427,10 @@ void LsysComposer::complete_task() {
         Task& parent = tasks_.back();
         rewriter_.work_of_part(new_polygon_work());
         if (sums_) part.sums = witness_->closes_part();
-        append(parent, part, task.placing, task.interprets);
+        if (!append(parent, part, task.placing, task.interprets)) return false;
         ++parent.at;
         if (sums_) parts_.add(task.module, task.stage, task.start, std::move(part));
-        return;
+        return true;
     }
     if (task.interprets) part.modules = 1;
     std::optional<Instance> line = line_for(part, task);
@@ -441,6 +442,7 @@ void LsysComposer::complete_task() {
     if (count > 1 && part.instances.size() == 1)
         origins_.try_emplace(part.instances.front().master, Origin{task.module, task.stage / 2});
     parts_.add(task.module, task.stage, task.start, std::move(part));
+    return true;
 }
 
 /// The control point that stands for all that differ from it by rounding only.

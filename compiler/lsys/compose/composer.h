@@ -157,7 +157,7 @@ class LsysComposer {
     std::vector<double> parameters_of(ModuleId module) const;
     bool has_room(Span span);
     const TurtlePart* known_part(ModuleId module, Stage stage, const TurtleState& state) const;
-    void append(Task& parent, const TurtlePart& part, const Placing& placing, bool interprets);
+    bool append(Task& parent, const TurtlePart& part, const Placing& placing, bool interprets);
     bool start_task(const Lookup& found, Stage stage, const Unfolded& unfolded);
     PartFrame frame_of_child(const Placing& placing) const;
     std::optional<Instance> line_for(const TurtlePart& part, const Task& task);
@@ -166,7 +166,7 @@ class LsysComposer {
     void count_work(const TurtlePart& part);
     std::size_t new_polygon_work();
     void complete_piece();
-    void complete_task();
+    bool complete_task();
     TurtleState state_of(const Turtle& turtle, double& snap);
     Vec3 representative(Vec3 point);
     std::shared_ptr<const TurtleFrame> representative(const TurtleFrame& exact, double& snap);

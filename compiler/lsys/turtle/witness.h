@@ -78,8 +78,8 @@ class WordWitness {
     virtual void opens_part() {}
     /// The number of the part that ends.
     virtual std::uint32_t closes_part() { return 0; }
-    /// The part stands here, so many times as large.
-    virtual void places(std::uint32_t /*part*/, double /*scale*/) {}
+    /// The part stands here, so many times as large. False as begins() is.
+    virtual bool places(std::uint32_t /*part*/, double /*scale*/) { return true; }
 
   protected:
     PartFrame frame_;

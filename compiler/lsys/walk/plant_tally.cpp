@@ -9,6 +9,8 @@ namespace {
 
 /// Most sums of all parts; each takes about 250 bytes.
 constexpr std::size_t most_sums = 1'000'000;
+/// Most additions of the sums of one part to those of another: some ten seconds.
+constexpr std::size_t most_additions = 50'000'000;
 
 } // namespace
 
@@ -41,9 +43,11 @@ std::uint32_t PlantTally::closes_part() {
     return static_cast<std::uint32_t>(parts_.size() - 1);
 }
 
-void PlantTally::places(std::uint32_t number, double scale) {
+bool PlantTally::places(std::uint32_t number, double scale) {
     const Part& placed = parts_[number];
     Part& here = part();
+    addition_count_ += placed.sums.size();
+    if (addition_count_ > most_additions) return false;
     for (const auto& [key, sums] : placed.sums) {
         Key own = key;
         own.order += axis().order + (key.one_more && axis().leaves == Leaves::yes ? 1 : 0);
@@ -57,6 +61,7 @@ void PlantTally::places(std::uint32_t number, double scale) {
         total.unmeasured += sums.unmeasured;
     }
     if (placed.axes.front().leaves == Leaves::yes) axis().leaves = Leaves::yes;
+    return true;
 }
 
 /// Sums of rows like the one that is added here.

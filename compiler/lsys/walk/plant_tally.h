@@ -25,11 +25,11 @@ class PlantTally : public WordWitness {
     PlantTotals totals() const;
 
     bool sums() const override { return true; }
-    /// False, without an error, where the parts have more sums than there is memory for.
+    /// False, without an error, where the parts have more sums than there is memory or work for.
     bool begins(const Module& module, const Turtle& turtle) override;
     void opens_part() override { open_.emplace_back().axes.emplace_back(); }
     std::uint32_t closes_part() override;
-    void places(std::uint32_t part, double scale) override;
+    bool places(std::uint32_t part, double scale) override;
     void ends(const Turtle& turtle) override;
     void runs(SymbolId symbol, std::span<const double> parameters, const Turtle& turtle) override;
     void draws(const DrawnBody& body) override;
@@ -76,7 +76,8 @@ class PlantTally : public WordWitness {
     const LsysGrammar& grammar_;
     double steps_;
     std::vector<Part> parts_;
-    std::size_t sum_count_ = 0; ///< of parts_
+    std::size_t sum_count_ = 0;      ///< of parts_
+    std::size_t addition_count_ = 0; ///< of those sums to others
     std::vector<Part> open_;    ///< those under way; the first is the whole word
     std::vector<std::string> materials_;
     SymbolId running_ = 0; ///< the module that the turtle carries out

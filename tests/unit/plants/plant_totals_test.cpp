@@ -158,5 +158,15 @@ TEST(PlantTotals, OfParentsOfThousandsOfOrdersAreNotTold) {
               std::string::npos);
 }
 
+/// Each of the parts in a row has a sum for each order below it, which are added for every one.
+TEST(PlantTotals, OfManyPartsWithManyOrdersAreNotTold) {
+    const auto plant = [](std::size_t parts) {
+        return "lsys a {\n steps 900\n width 0.1\n axiom R\n R -> " + std::string(parts, 'A') +
+               "\n A -> F[A]A\n}\n";
+    };
+    EXPECT_TRUE(totals_of(plant(100)));
+    EXPECT_FALSE(totals_of(plant(60'000)));
+}
+
 } // namespace
 } // namespace graftal

@@ -255,7 +255,7 @@ std::optional<FoundModel> find_model(const FindOptions& options, const CancelFla
     std::optional<PlaneMaps> start = start_of(options, frame, target, compilation);
     if (!start) return std::nullopt;
     search_options.start = std::move(*start);
-    FoundSystem system = (options.occupancy ? search_occupancy : search)(
+    FoundSystem system = (options.occupancy ? search_occupancy : search<PlaneMap>)(
         target, search_options, WorkerThreads(options.threads), cancel, options.on_progress);
 
     // The largest image comes first. The numbers are measured as they are written.

@@ -102,7 +102,26 @@ template<typename Map> SetAgreement AttractorPainterOf<Map>::agreement_in_full()
     return result;
 }
 
+template<typename Map> double collage_distance(const TargetOf<Map>& target, const std::vector<Map>& maps) {
+    CellSet images = target.cells();
+    images.cells.assign(images.cells.size(), false);
+    double beyond = 0;
+    for (const typename Map::Point p : target.points())
+        for (const Map& map : maps) {
+            const typename Map::Point q = map(p);
+            if (target.grid().holds(q)) {
+                images.cells[target.grid().index(q)] = true;
+            } else { // to some point of the target: no less than the distance
+                beyond = std::max(beyond, glm::length(q - target.nearest(q)));
+            }
+        }
+    if (std::find(images.cells.begin(), images.cells.end(), true) == images.cells.end()) return beyond;
+    return std::max(beyond, hausdorff_distance(target.cells(), images));
+}
+
 template class AttractorPainterOf<PlaneMap>;
 template class AttractorPainterOf<SpaceMap>;
+template double collage_distance(const Target&, const PlaneMaps&);
+template double collage_distance(const SpaceTarget&, const SpaceMaps&);
 
 } // namespace graftal

@@ -49,4 +49,8 @@ template<typename Map> class AttractorPainterOf {
 
 using AttractorPainter = AttractorPainterOf<PlaneMap>;
 
+/// The Hausdorff distance of the target from the union of its images, each moved to its nearest cell: epsilon
+/// of the collage theorem (Barnsley 1985), in cells.
+template<typename Map> double collage_distance(const TargetOf<Map>& target, const std::vector<Map>& maps);
+
 } // namespace graftal

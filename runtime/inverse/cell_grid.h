@@ -42,7 +42,7 @@ template<typename Point> class CellGrid {
         std::size_t cell = 0;
         for (std::size_t k = dimensions; k-- > 0;) {
             const double x = p[at(k)];
-            const std::size_t there = x < 0             ? 0
+            const std::size_t there = x < 0              ? 0
                                       : x < ends_[k] - 1 ? static_cast<std::size_t>(static_cast<int>(x))
                                                          : sides_[k] - 1;
             cell = cell * sides_[k] + there;

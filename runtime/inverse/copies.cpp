@@ -42,8 +42,8 @@ struct PartialCover {
 
 /// The covers with one copy more: the best few for each.
 template<typename Map>
-std::vector<PartialCover> longer(const std::vector<PartialCover>& covers, const std::vector<SelfCopy<Map>>& copies,
-                                 double samples, std::size_t beam) {
+std::vector<PartialCover> longer(const std::vector<PartialCover>& covers,
+                                 const std::vector<SelfCopy<Map>>& copies, double samples, std::size_t beam) {
     constexpr double price_of_map = 0.012;
     std::vector<PartialCover> result;
     for (const PartialCover& cover : covers) {
@@ -93,15 +93,13 @@ std::size_t count_of(const SampleSet& set) {
     return count;
 }
 
-template<typename Map>
-SampleSet covered_by(const Map& map, const TargetOf<Map>& target, double reach_px) {
+template<typename Map> SampleSet covered_by(const Map& map, const TargetOf<Map>& target, double reach_px) {
     const std::span<const typename Map::Point> samples = target.samples();
     SampleSet set((samples.size() + 63) / 64, 0);
     const Map back = bounded_inverse(map, target.centre(), 0.01);
-    const double reach = reach_px * target.blur;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const typename Map::Point away = map(target.nearest(back(samples[i]))) - samples[i];
-        if (glm::dot(away, away) <= reach * reach) set[i / 64] |= std::uint64_t{1} << (i % 64);
+        if (glm::dot(away, away) <= reach_px * reach_px) set[i / 64] |= std::uint64_t{1} << (i % 64);
     }
     return set;
 }
@@ -122,21 +120,42 @@ double CopySearch<Map>::outside(const Map& map, std::span<const Point> points, d
         const Point q = map(p);
         const double away = glm::length(q - target_.nearest(q));
         sum += std::min(away, 8.0);
-        bad += away > 1.6 * target_.blur;
+        bad += away > target_.beside;
     }
     mean_px = sum / static_cast<double>(points.size());
     return static_cast<double>(bad) / static_cast<double>(points.size());
 }
 
 template<typename Map>
-std::optional<SelfCopy<Map>> CopySearch<Map>::find(Draws& draws, std::uint64_t& work, const Point* where) const {
+Map CopySearch<Map>::first_map(Draws& draws, std::uint64_t& work, const Point* where) const {
+    // Space has many more directions than the plane, so that a look at a few points pays before a map grows.
+    constexpr int tries = Map::dimensions == 2 ? 1 : 24;
+    constexpr std::size_t looked_at = 30;
+    const std::vector<Point>& points = target_.points();
+    Map best;
+    double least = 1e300;
+    for (int i = 0; i < tries; ++i) {
+        const Map linear = Map::random(where != nullptr, rules_.similar, draws);
+        const Point from = points[draws.below(points.size())];
+        const Map map = linear.taking(from, where ? *where : points[draws.below(points.size())]);
+        if (tries == 1) return map;
+        const double value = growth_value(target_, std::span(coarse_).first(looked_at), 8, map);
+        if (value < least) {
+            least = value;
+            best = map;
+        }
+    }
+    work += tries * looked_at;
+    return best;
+}
+
+template<typename Map>
+std::optional<SelfCopy<Map>> CopySearch<Map>::find(Draws& draws, std::uint64_t& work,
+                                                   const Point* where) const {
     const std::array<double, 2> coarse_tau_px = {16 * target_.fineness, 6 * target_.fineness};
     const std::array<double, 3> fine_tau_px = {3 * target_.fineness, 1.5 * target_.fineness, 0.5};
     SelfCopy<Map> copy;
-    const Map linear = Map::random(where != nullptr, rules_.similar, draws);
-    const std::vector<Point>& points = target_.points();
-    const Point from = points[draws.below(points.size())];
-    copy.map = linear.taking(from, where ? *where : points[draws.below(points.size())]);
+    copy.map = first_map(draws, work, where);
     work += grow(target_, coarse_, coarse_tau_px, 8, rules_, copy.map);
     double mean_px = 0;
     outside(copy.map, coarse_, mean_px);
@@ -147,11 +166,9 @@ std::optional<SelfCopy<Map>> CopySearch<Map>::find(Draws& draws, std::uint64_t& 
 
 template<typename Map>
 double CopySearch<Map>::merit(const Map& map, std::span<const Point> wanted, double reach_px,
-                         std::uint64_t& work) const {
+                              std::uint64_t& work) const {
     const double squared_reach = reach_px * reach_px;
-    const auto share = [&](Point away) {
-        return std::min(1.0, glm::dot(away, away) / squared_reach);
-    };
+    const auto share = [&](Point away) { return std::min(1.0, glm::dot(away, away) / squared_reach); };
     const Map back = bounded_inverse(map, target_.centre(), 0.01);
     double missed = 0, outside = 0;
     for (const Point p : wanted)
@@ -166,8 +183,8 @@ double CopySearch<Map>::merit(const Map& map, std::span<const Point> wanted, dou
 }
 
 template<typename Map>
-std::optional<SelfCopy<Map>> CopySearch<Map>::climb(const Map& map, std::span<const Point> wanted, Draws& draws,
-                                          std::uint64_t& work) const {
+std::optional<SelfCopy<Map>> CopySearch<Map>::climb(const Map& map, std::span<const Point> wanted,
+                                                    Draws& draws, std::uint64_t& work) const {
     if (wanted.empty()) wanted = points_.outer;
     Map best = map;
     double size_px = 8 * target_.fineness;
@@ -179,7 +196,8 @@ std::optional<SelfCopy<Map>> CopySearch<Map>::climb(const Map& map, std::span<co
             const double entry = size_px / (2 * target_.spread());
             std::array<double, Map::entries> step;
             for (std::size_t k = 0; k < step.size(); ++k)
-                step[k] = draws.normal() * (k % (Map::dimensions + 1) == Map::dimensions ? 0.7 * size_px : entry);
+                step[k] =
+                    draws.normal() * (k % (Map::dimensions + 1) == Map::dimensions ? 0.7 * size_px : entry);
             const Map tried =
                 ruled(moved(best, step.data(), target_.centre(), rules_.most_stretch), target_, rules_);
             const double now = merit(tried, wanted, reach_px, work);
@@ -197,7 +215,7 @@ std::optional<SelfCopy<Map>> CopySearch<Map>::climb(const Map& map, std::span<co
 
 template<typename Map>
 std::optional<SelfCopy<Map>> CopySearch<Map>::snapped(const Map& map, double reach_px, Draws& draws,
-                                            std::uint64_t& work) const {
+                                                      std::uint64_t& work) const {
     std::vector<Map> one(1, map);
     for (; reach_px >= 2; reach_px /= 2)
         work += refine(target_, points_, {1, 6, reach_px}, rules_, draws, one);
@@ -214,7 +232,8 @@ std::optional<SelfCopy<Map>> CopySearch<Map>::snapped(const Map& map, double rea
 }
 
 template<typename Map>
-std::vector<SelfCopy<Map>> distinct(std::vector<SelfCopy<Map>> copies, const TargetOf<Map>& target, std::size_t most) {
+std::vector<SelfCopy<Map>> distinct(std::vector<SelfCopy<Map>> copies, const TargetOf<Map>& target,
+                                    std::size_t most) {
     std::stable_sort(copies.begin(), copies.end(),
                      [](const SelfCopy<Map>& a, const SelfCopy<Map>& b) { return rank_of(a) > rank_of(b); });
     std::vector<SelfCopy<Map>> result;
@@ -229,7 +248,7 @@ std::vector<SelfCopy<Map>> distinct(std::vector<SelfCopy<Map>> copies, const Tar
 
 template<typename Map>
 std::vector<std::vector<Map>> covers(const std::vector<SelfCopy<Map>>& copies, const TargetOf<Map>& target,
-                              std::size_t most_maps, std::size_t most_covers) {
+                                     std::size_t most_maps, std::size_t most_covers) {
     constexpr std::size_t beam = 40;
     const auto samples = static_cast<double>(target.samples().size());
     std::vector<PartialCover> found, current(1);

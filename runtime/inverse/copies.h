@@ -40,14 +40,15 @@ template<typename Map> class CopySearch {
     /// many of the `wanted` points as they can; none wanted: points of the target's edge. Nothing where there
     /// is none.
     std::optional<SelfCopy<Map>> climb(const Map& map, std::span<const Point> wanted, Draws& draws,
-                                  std::uint64_t& work) const;
+                                       std::uint64_t& work) const;
 
   private:
+    /// The most promising of random maps.
+    Map first_map(Draws& draws, std::uint64_t& work, const Point* where) const;
     /// The map, moved so that edges of the image and of the target coincide.
     std::optional<SelfCopy<Map>> snapped(const Map& map, double reach_px, Draws& draws,
-                                    std::uint64_t& work) const;
-    double merit(const Map& map, std::span<const Point> wanted, double reach_px,
-                 std::uint64_t& work) const;
+                                         std::uint64_t& work) const;
+    double merit(const Map& map, std::span<const Point> wanted, double reach_px, std::uint64_t& work) const;
     double outside(const Map& map, std::span<const Point> points, double& mean_px) const;
 
     const TargetOf<Map>& target_;
@@ -58,11 +59,12 @@ template<typename Map> class CopySearch {
 
 /// The best of the copies, without those that repeat a better one.
 template<typename Map>
-std::vector<SelfCopy<Map>> distinct(std::vector<SelfCopy<Map>> copies, const TargetOf<Map>& target, std::size_t most);
+std::vector<SelfCopy<Map>> distinct(std::vector<SelfCopy<Map>> copies, const TargetOf<Map>& target,
+                                    std::size_t most);
 
 /// Sets of copies that together cover the target with few maps, best first, by beam search.
 template<typename Map>
 std::vector<std::vector<Map>> covers(const std::vector<SelfCopy<Map>>& copies, const TargetOf<Map>& target,
-                              std::size_t most_maps, std::size_t most_covers);
+                                     std::size_t most_maps, std::size_t most_covers);
 
 } // namespace graftal

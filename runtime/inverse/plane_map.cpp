@@ -18,11 +18,11 @@ PlaneMap map_of(const PlaneStretch& s, Vec2 from, Vec2 to) {
     const double cl = std::cos(s.left_rad), sl = std::sin(s.left_rad);
     const double cr = std::cos(s.right_rad), sr = std::sin(s.right_rad);
     const PlaneMap map{cl * s.largest * cr - sl * s.least * sr,
-                 -cl * s.largest * sr - sl * s.least * cr,
-                 sl * s.largest * cr + cl * s.least * sr,
-                 -sl * s.largest * sr + cl * s.least * cr,
-                 0,
-                 0};
+                       -cl * s.largest * sr - sl * s.least * cr,
+                       sl * s.largest * cr + cl * s.least * sr,
+                       -sl * s.largest * sr + cl * s.least * cr,
+                       0,
+                       0};
     return map.taking(from, to);
 }
 

@@ -85,6 +85,9 @@ bool stepped(const Normal& normal, double damping, double floor, const TargetOf<
     result.resize(maps.size());
     for (std::size_t i = 0; i < maps.size(); ++i)
         result[i] = moved(maps[i], step.data() + Map::entries * i, target.centre(), rules.most_stretch);
+    if (rules.similar && Map::dimensions == 3) // rotations of space are no linear space
+        for (Map& map : result)
+            map = nearest_similarity(map, target.centre());
     return true;
 }
 
@@ -93,8 +96,8 @@ template<typename Map> class Refinement {
     using Point = typename Map::Point;
     using Maps = std::vector<Map>;
 
-    Refinement(const TargetOf<Map>& target, const FitPoints<Point>& points, const LevelFit& fit, const MapRules& rules,
-               std::size_t maps, Draws& draws)
+    Refinement(const TargetOf<Map>& target, const FitPoints<Point>& points, const LevelFit& fit,
+               const MapRules& rules, std::size_t maps, Draws& draws)
         : target_(target), points_(points), fit_(fit), rules_(rules),
           levels_(static_cast<std::size_t>(fit.levels)), inner_(points.inner.size() * maps),
           outer_(points.outer.size()), normal_(entries * maps) {
@@ -261,6 +264,16 @@ template<typename Map> class MapGrowth {
         : target_(target), inner_(inner), rules_(rules),
           scale_(1 / (static_cast<double>(inner.size()) * tau_px * tau_px)) {}
 
+    double value_of(const Map& map) {
+        double sum = 0;
+        for (const Point p : inner_) {
+            const Point q = map(p);
+            sum += squared_length(q - target_.nearest(q));
+        }
+        work_ += inner_.size();
+        return sum * scale_ - growth * std::log(std::abs(map.determinant()) + least_size);
+    }
+
     std::uint64_t run(int iterations, Map& map) {
         double damping = 1e-2, value = value_of(map);
         std::vector<Map> one(1, map), trial;
@@ -287,18 +300,8 @@ template<typename Map> class MapGrowth {
 
   private:
     static constexpr std::size_t entries = Map::entries;
-    static constexpr double growth = 0.05; ///< mu
+    static constexpr double growth = 0.05;                                    ///< mu
     static constexpr double least_size = Map::dimensions == 2 ? 1e-9 : 1e-12; ///< of a determinant
-
-    double value_of(const Map& map) {
-        double sum = 0;
-        for (const Point p : inner_) {
-            const Point q = map(p);
-            sum += squared_length(q - target_.nearest(q));
-        }
-        work_ += inner_.size();
-        return sum * scale_ - growth * std::log(std::abs(map.determinant()) + least_size);
-    }
 
     void gather(const Map& map, Normal& normal) {
         std::array<double, entries * entries> hessian{};
@@ -331,7 +334,7 @@ template<typename Map> class MapGrowth {
 
     const TargetOf<Map>& target_;
     std::span<const Point> inner_;
-    const MapRules& rules_;
+    MapRules rules_;
     double scale_;
     std::uint64_t work_ = 0;
 };
@@ -359,10 +362,17 @@ std::uint64_t refine(const TargetOf<Map>& target, const FitPoints<typename Map::
     return Refinement<Map>(target, points, fit, rules, maps.size(), draws).run(maps);
 }
 
+template<typename Map>
+double growth_value(const TargetOf<Map>& target, std::span<const typename Map::Point> inner, double tau_px,
+                    const Map& map) {
+    return MapGrowth<Map>(target, inner, tau_px, MapRules()).value_of(map);
+}
+
 #define GRAFTAL_REFINE(Map)                                                                                  \
     template Map ruled(const Map&, const TargetOf<Map>&, const MapRules&);                                   \
     template std::uint64_t grow(const TargetOf<Map>&, std::span<const Map::Point>, std::span<const double>,  \
                                 int, const MapRules&, Map&);                                                 \
+    template double growth_value(const TargetOf<Map>&, std::span<const Map::Point>, double, const Map&);     \
     template std::uint64_t refine(const TargetOf<Map>&, const FitPoints<Map::Point>&, const LevelFit&,       \
                                   const MapRules&, Draws&, std::vector<Map>&);
 GRAFTAL_REFINE(PlaneMap)

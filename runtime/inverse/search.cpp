@@ -14,8 +14,12 @@ namespace graftal {
 
 namespace {
 
-template<typename Map> constexpr double seconds_of_map =
-    Map::dimensions == 2 ? 1.8e-8 : 2.6e-8; ///< a map applied to a point, with the nearest cell of the target
+constexpr double seconds_of_map = 1.8e-8; ///< a map applied to a point, with the nearest cell of the target
+
+/// The weight of the strict agreement. In space the cells are coarser, and have more neighbours that count.
+template<typename Map> constexpr double strict_weight = Map::dimensions == 2 ? 0.1 : 0.4;
+/// The strict agreement of a target that is found.
+template<typename Map> constexpr double strict_enough = Map::dimensions == 2 ? 0 : 0.75;
 
 template<typename Map> struct System {
     std::vector<Map> maps;
@@ -68,9 +72,12 @@ template<typename Map> class Search {
   private:
     static constexpr std::size_t line_count = 6; ///< systems that are bettered side by side
 
-    double seconds() const { return static_cast<double>(work_) * seconds_of_map<Map>; }
+    double seconds() const { return static_cast<double>(work_) * seconds_of_map; }
     double fraction() const { return seconds() / options_.seconds; }
-    bool solved() const { return !lines_.empty() && lines_.front().agreement.tolerant >= 0.998; }
+    bool solved() const {
+        return !lines_.empty() && lines_.front().agreement.tolerant >= 0.998 &&
+               lines_.front().agreement.strict >= strict_enough<Map>;
+    }
     bool going_on(double until) const { return fraction() < until && !solved() && !cancel_.raised(); }
 
     /// Runs tasks number 0 to count - 1, each with random numbers of its own.
@@ -93,7 +100,8 @@ template<typename Map> class Search {
     }
 
     double value_of(const SetAgreement& agreement, std::size_t maps) const {
-        return 0.9 * agreement.tolerant + 0.1 * agreement.strict - 0.004 * static_cast<double>(maps);
+        return (1 - strict_weight<Map>)*agreement.tolerant + strict_weight<Map> * agreement.strict -
+               0.004 * static_cast<double>(maps);
     }
 
     System judge(Task& task, Maps maps) const {
@@ -316,7 +324,8 @@ template<typename Map> class Search {
             Map& map = maps[(i + batches_) % maps.size()];
             std::array<double, Map::entries> step;
             for (std::size_t k = 0; k < step.size(); ++k)
-                step[k] = size * task.draws.normal() * (k % (Map::dimensions + 1) == Map::dimensions ? 0.5 * target_.spread() : 1);
+                step[k] = size * task.draws.normal() *
+                          (k % (Map::dimensions + 1) == Map::dimensions ? 0.5 * target_.spread() : 1);
             map = ruled(moved(map, step.data(), target_.centre(), options_.rules.most_stretch), target_,
                         options_.rules);
             systems[i] = judge(task, std::move(maps));

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "compiler/support/stretch.h"
+
 namespace graftal {
 
 namespace {
@@ -52,11 +54,6 @@ Mat3 random_rotation(Draws& draws) {
             s * (x * z + w * y),     s * (y * z - w * x),     1 - s * (x * x + y * y)};
 }
 
-/// The squared Frobenius norm: no stretch is longer than its root.
-double squared_entries(const Mat3& m) {
-    return glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]);
-}
-
 std::array<double, SpaceMap::entries> step_of(const Mat3& linear, Vec3 shift) {
     std::array<double, SpaceMap::entries> step{};
     for (int row = 0; row < 3; ++row) {
@@ -89,7 +86,8 @@ std::array<std::array<double, 12>, 7> SpaceMap::similar_steps() const {
     for (int k = 0; k < 3; ++k) {
         Vec3 axis(0.0);
         axis[k] = 1;
-        const Mat3 turn(glm::cross(axis, turned[0]), glm::cross(axis, turned[1]), glm::cross(axis, turned[2]));
+        const Mat3 turn(glm::cross(axis, turned[0]), glm::cross(axis, turned[1]),
+                        glm::cross(axis, turned[2]));
         steps[static_cast<std::size_t>(1 + k)] = step_of(turn, Vec3(0.0));
         steps[static_cast<std::size_t>(4 + k)] = step_of(Mat3(0.0), axis);
     }
@@ -123,10 +121,9 @@ SpaceMap moved(const SpaceMap& map, const double* step, Vec3 centre, double most
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
             result.linear[column][row] += step[4 * row + column];
-    if (squared_entries(result.linear) > most * most) {
-        const SpaceStretch stretch = stretch_of(result.linear);
-        if (stretch.factors.x > most)
-            result.linear = linear_of(stretch.left, glm::min(stretch.factors, Vec3(most)), stretch.right);
+    if (squared_entries(result.linear) > most * most && largest_stretch(result.linear) > most) {
+        const SpaceStretch s = stretch_of(result.linear);
+        result.linear = linear_of(s.left, glm::min(s.factors, Vec3(most)), s.right);
     }
     return result.taking(centre, map(centre) + Vec3(step[3], step[7], step[11]));
 }

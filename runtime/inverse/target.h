@@ -17,14 +17,14 @@ template<typename Map> class TargetOf {
     using Point = typename Map::Point;
     /// Lengths of the search, over those for sets of the plane, which have more cells a side.
     static constexpr double fineness = Map::dimensions == 2 ? 1 : 0.5;
-    /// A cell's diagonal, over that in the plane.
-    static constexpr double blur = Map::dimensions == 2 ? 1 : 1.2247448713915890;
+    /// A point farther from the set counts as outside.
+    static constexpr double beside = Map::dimensions == 2 ? 1.6 : 1.3;
 
     /// Requires a set that is not empty, and lies in the whole of `set`: no empty row or column at its
     /// border. In the plane, its depth is 1.
     explicit TargetOf(const CellSet& set);
 
-    const CellGrid<Point>& grid() const { return grid_; }                 ///< with the room
+    const CellGrid<Point>& grid() const { return grid_; } ///< with the room
     int width() const { return static_cast<int>(grid_.side(0)); }
     int height() const { return static_cast<int>(grid_.side(1)); }
     int room() const { return room_; }

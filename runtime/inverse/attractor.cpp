@@ -10,11 +10,11 @@ namespace graftal {
 
 namespace {
 
-template<typename Point> CellGrid<Point> divided(const CellGrid<Point>& grid, std::uint32_t parts) {
-    std::array<std::size_t, CellGrid<Point>::dimensions> sides;
+template<typename Point> CellLattice<Point> divided(const CellLattice<Point>& grid, std::uint32_t parts) {
+    std::array<std::size_t, CellLattice<Point>::dimensions> sides;
     for (std::size_t k = 0; k < sides.size(); ++k)
         sides[k] = parts * grid.side(k);
-    return CellGrid<Point>(sides);
+    return CellLattice<Point>(sides);
 }
 
 } // namespace
@@ -91,7 +91,7 @@ template<typename Map> SetAgreement AttractorPainterOf<Map>::agreement_in_full()
         mine.cells[cell] = true;
     double there = 0, back = 0;
     for (const std::uint32_t cell : cells_) {
-        const Point p = CellGrid<Point>::middle(target_.grid().place(cell)), away = p - target_.nearest(p);
+        const Point p = CellLattice<Point>::middle(target_.grid().place(cell)), away = p - target_.nearest(p);
         there += std::sqrt(glm::dot(away, away));
     }
     const std::vector<std::int64_t> squared = squared_distances(mine);

@@ -39,7 +39,7 @@ template<typename Map> class AttractorPainterOf {
   private:
     const TargetOf<Map>& target_;
     std::uint32_t parts_;
-    CellGrid<Point> part_grid_;
+    CellLattice<Point> part_grid_;
     std::vector<std::ptrdiff_t> neighbours_;
     std::vector<std::uint8_t> drawn_, drawn_parts_;
     std::vector<std::uint32_t> cells_, touched_;

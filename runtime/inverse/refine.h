@@ -32,7 +32,7 @@ template<typename Map>
 std::uint64_t grow(const TargetOf<Map>& target, std::span<const typename Map::Point> inner,
                    std::span<const double> tau_px, int iterations, const MapRules& rules, Map& map);
 
-/// What grow() makes least, for one length tau.
+/// The value that grow() makes least, for one length tau.
 template<typename Map>
 double growth_value(const TargetOf<Map>& target, std::span<const typename Map::Point> inner, double tau_px,
                     const Map& map);

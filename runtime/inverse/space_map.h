@@ -15,7 +15,7 @@ struct SpaceMap : Affine {
     double determinant() const;
     Vec3 transposed(Vec3 p) const { return p * linear; }
     SpaceMap taking(Vec3 from, Vec3 to) const { return {{linear, to - linear * from}}; }
-    /// As PlaneMap has it, with 1e-10.
+    /// A determinant nearer to 0 counts as 1e-10.
     std::array<double, entries> log_slope() const;
     std::array<std::array<double, entries>, similar_entries> similar_steps() const;
     static SpaceMap half() { return {{Mat3(0.5), Vec3(0.0)}}; }

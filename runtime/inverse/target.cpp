@@ -27,12 +27,12 @@ CellSet with_room(const CellSet& set, int room, bool flat) {
     return grid;
 }
 
-template<typename Point> CellGrid<Point> grid_of(const CellSet& cells) {
-    std::array<std::size_t, CellGrid<Point>::dimensions> sides;
+template<typename Point> CellLattice<Point> grid_of(const CellSet& cells) {
+    std::array<std::size_t, CellLattice<Point>::dimensions> sides;
     const std::array<int, 3> all = {cells.width, cells.height, cells.depth};
     for (std::size_t k = 0; k < sides.size(); ++k)
         sides[k] = static_cast<std::size_t>(all[k]);
-    return CellGrid<Point>(sides);
+    return CellLattice<Point>(sides);
 }
 
 } // namespace

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/inverse/cell_grid.h"
+#include "runtime/inverse/cell_lattice.h"
 #include "runtime/inverse/space_map.h"
 #include "runtime/points/distance_transform.h"
 
@@ -24,7 +24,7 @@ template<typename Map> class TargetOf {
     /// border. In the plane, its depth is 1.
     explicit TargetOf(const CellSet& set);
 
-    const CellGrid<Point>& grid() const { return grid_; } ///< with the room
+    const CellLattice<Point>& grid() const { return grid_; } ///< with the room
     int width() const { return static_cast<int>(grid_.side(0)); }
     int height() const { return static_cast<int>(grid_.side(1)); }
     int room() const { return room_; }
@@ -39,7 +39,7 @@ template<typename Map> class TargetOf {
 
     /// The point of the set that is nearest to the cell of `p`; a place outside the grid counts as the
     /// border.
-    Point nearest(Point p) const { return CellGrid<Point>::middle(nearest_[grid_.clamped_index(p)]); }
+    Point nearest(Point p) const { return CellLattice<Point>::middle(nearest_[grid_.clamped_index(p)]); }
     /// Random points: half of them from the edge of the set, which says most about maps.
     std::vector<Point> drawn(std::size_t count, Draws& draws) const;
     std::vector<Point> drawn_edge(std::size_t count, Draws& draws) const;
@@ -47,9 +47,9 @@ template<typename Map> class TargetOf {
   private:
     int room_;
     CellSet cells_;
-    CellGrid<Point> grid_;
+    CellLattice<Point> grid_;
     std::vector<Point> points_, edge_, samples_;
-    std::vector<typename CellGrid<Point>::Place> nearest_; ///< of each cell
+    std::vector<typename CellLattice<Point>::Place> nearest_; ///< of each cell
     std::vector<std::uint8_t> near_;
     Point centre_{0.0};
     double spread_ = 0;

@@ -17,7 +17,7 @@ constexpr std::array<int, 5> sides = {64, 48, 32, 24, 16}; ///< cells along the 
 constexpr std::size_t most_voxels = 20'000, least_voxels = 24;
 constexpr std::size_t points_a_voxel = 4;   ///< of a cloud, on average
 constexpr double most_lattice_points = 1e8; ///< on all triangles
-/// Of a cell, around the box. Sets that halve or double would else lie along the borders of cells.
+/// Room around the box, in cells. Sets that halve or double would else lie along the borders of cells.
 constexpr double margin = 0.25;
 constexpr double least_extent = 1e-9; ///< of the box, over the largest coordinate
 

@@ -11,12 +11,12 @@
 namespace graftal {
 
 /// A grid of cells of the plane or of space, each one unit wide, from the origin on.
-template<typename Point> class CellGrid {
+template<typename Point> class CellLattice {
   public:
     static constexpr std::size_t dimensions = Point::length();
     using Place = std::array<std::uint16_t, dimensions>; ///< a cell
 
-    explicit CellGrid(const std::array<std::size_t, dimensions>& sides) : sides_(sides) {
+    explicit CellLattice(const std::array<std::size_t, dimensions>& sides) : sides_(sides) {
         for (std::size_t k = 0; k < dimensions; ++k) {
             ends_[k] = static_cast<double>(sides[k]);
             cells_ *= sides[k];

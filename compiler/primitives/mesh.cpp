@@ -24,7 +24,7 @@ bool is_mesh_name(std::string_view file_name) {
     return ending == ".obj" || ending == ".ply" || ending == ".stl";
 }
 
-std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault) {
+std::optional<MeshData> read_mesh_or_cloud(std::string_view bytes, std::string& fault) {
     const bool is_ply = bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
     const bool is_binary = is_ply || is_binary_stl(bytes);
     if (const std::size_t zero = bytes.find('\0'); !is_binary && zero != std::string_view::npos) {
@@ -35,9 +35,11 @@ std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault) {
     }
     const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
     const bool is_stl = is_binary || in_small_letters(bytes.substr(begin, 5)) == "solid";
-    std::optional<MeshData> data = is_ply   ? read_ply(bytes, fault)
-                                   : is_stl ? read_stl(bytes, fault)
-                                            : read_obj(bytes, fault);
+    return is_ply ? read_ply(bytes, fault) : is_stl ? read_stl(bytes, fault) : read_obj(bytes, fault);
+}
+
+std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault) {
+    std::optional<MeshData> data = read_mesh_or_cloud(bytes, fault);
     if (!data) return std::nullopt;
     if (data->triangles.empty()) {
         fault = data->vertices.empty()

@@ -35,6 +35,10 @@ inline constexpr double most_mesh_coordinate = 1e6;
 /// for.
 std::optional<MeshData> read_mesh(std::string_view bytes, std::string& fault);
 
+/// Reads a mesh whose triangles and normals are all as the file has them, or a cloud of points: a file
+/// without faces.
+std::optional<MeshData> read_mesh_or_cloud(std::string_view bytes, std::string& fault);
+
 /// The fault of a coordinate, of a vertex or of a picture; empty if there is none.
 std::string fault_of_coordinate(double coordinate);
 

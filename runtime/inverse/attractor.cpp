@@ -1,16 +1,31 @@
 #include "runtime/inverse/attractor.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include <glm/geometric.hpp>
 
 namespace graftal {
 
-AttractorPainter::AttractorPainter(const Target& target, std::uint32_t parts)
-    : target_(target), parts_(parts),
-      drawn_(static_cast<std::size_t>(target.width()) * static_cast<std::size_t>(target.height())),
-      drawn_parts_(drawn_.size() * parts * parts) {}
+namespace {
 
-std::uint64_t AttractorPainter::draw(const PlaneMaps& maps) {
+template<typename Point> CellLattice<Point> divided(const CellLattice<Point>& grid, std::uint32_t parts) {
+    std::array<std::size_t, CellLattice<Point>::dimensions> sides;
+    for (std::size_t k = 0; k < sides.size(); ++k)
+        sides[k] = parts * grid.side(k);
+    return CellLattice<Point>(sides);
+}
+
+} // namespace
+
+template<typename Map>
+AttractorPainterOf<Map>::AttractorPainterOf(const TargetOf<Map>& target, std::uint32_t parts)
+    : target_(target), parts_(parts), part_grid_(divided(target.grid(), parts)),
+      neighbours_(target.grid().neighbours()), drawn_(target.grid().cells()),
+      drawn_parts_(part_grid_.cells()) {}
+
+template<typename Map> std::uint64_t AttractorPainterOf<Map>::draw(const std::vector<Map>& maps) {
     for (const std::uint32_t part : touched_)
         drawn_parts_[part] = 0;
     for (const std::uint32_t cell : cells_)
@@ -18,26 +33,22 @@ std::uint64_t AttractorPainter::draw(const PlaneMaps& maps) {
     touched_.clear();
     cells_.clear();
     outside_ = 0;
-    const auto cells_a_row = static_cast<std::uint32_t>(target_.width());
-    const double parts = parts_, width = parts * target_.width(), height = parts * target_.height();
+    const double parts = parts_;
     queue_.assign(1, fixed_point(maps.front()));
     for (std::size_t i = 0; i < queue_.size(); ++i) {
-        const Vec2 p = queue_[i];
-        for (const PlaneMap& map : maps) {
-            const Vec2 q = map(p);
-            const double column = parts * q.x, row = parts * q.y;
-            if (!(column >= 0 && row >= 0 && column < width && row < height)) {
+        const Point p = queue_[i];
+        for (const Map& map : maps) {
+            const Point q = map(p), fine = parts * q;
+            if (!part_grid_.holds(fine)) {
                 ++outside_;
                 continue;
             }
-            const auto x = static_cast<std::uint32_t>(column), y = static_cast<std::uint32_t>(row);
-            const std::uint32_t part = y * cells_a_row * parts_ + x;
+            const auto part = static_cast<std::uint32_t>(part_grid_.index(fine));
             if (drawn_parts_[part]) continue;
             drawn_parts_[part] = 1;
             touched_.push_back(part);
             queue_.push_back(q);
-            const std::uint32_t cell =
-                static_cast<std::uint32_t>(q.y) * cells_a_row + static_cast<std::uint32_t>(q.x);
+            const auto cell = static_cast<std::uint32_t>(target_.grid().index(q));
             if (drawn_[cell]) continue;
             drawn_[cell] = 1;
             cells_.push_back(cell);
@@ -46,25 +57,20 @@ std::uint64_t AttractorPainter::draw(const PlaneMaps& maps) {
     return queue_.size() * maps.size();
 }
 
-bool AttractorPainter::beside(std::size_t cell) const {
-    const auto width = static_cast<std::size_t>(target_.width());
-    for (std::size_t row = cell - width; row <= cell + width; row += width)
-        if (drawn_[row - 1] || drawn_[row] || drawn_[row + 1]) return true;
+template<typename Map> bool AttractorPainterOf<Map>::reaches(Point point) const {
+    const std::size_t cell = target_.grid().index(point);
+    for (const std::ptrdiff_t step : neighbours_)
+        if (drawn_[cell + static_cast<std::size_t>(step)]) return true;
     return false;
 }
 
-bool AttractorPainter::reaches(Vec2 point) const {
-    return beside(static_cast<std::size_t>(point.y) * static_cast<std::size_t>(target_.width()) +
-                  static_cast<std::size_t>(point.x));
-}
-
-SetAgreement AttractorPainter::agreement() const {
+template<typename Map> SetAgreement AttractorPainterOf<Map>::agreement() const {
     std::size_t both = 0, false_cells = 0, missed = 0;
     for (const std::uint32_t cell : cells_) {
         both += target_.inside(cell);
         false_cells += !target_.near(cell);
     }
-    for (const Vec2 p : target_.points())
+    for (const Point p : target_.points())
         missed += !reaches(p);
     const auto drawn = static_cast<double>(cells_.size() + outside_);
     const auto wanted = static_cast<double>(target_.points().size());
@@ -76,26 +82,46 @@ SetAgreement AttractorPainter::agreement() const {
     return result;
 }
 
-SetAgreement AttractorPainter::agreement_in_full() const {
+template<typename Map> SetAgreement AttractorPainterOf<Map>::agreement_in_full() const {
     SetAgreement result = agreement();
     if (cells_.empty()) return result;
-    CellSet mine(target_.width(), target_.height());
+    CellSet mine = target_.cells();
+    mine.cells.assign(mine.cells.size(), false);
     for (const std::uint32_t cell : cells_)
         mine.cells[cell] = true;
-    const auto width = static_cast<std::size_t>(target_.width());
     double there = 0, back = 0;
     for (const std::uint32_t cell : cells_) {
-        const Vec2 p{static_cast<double>(cell % width) + 0.5, static_cast<double>(cell / width) + 0.5};
-        const Vec2 away = p - target_.nearest(p);
-        there += std::sqrt(away.x * away.x + away.y * away.y);
+        const Point p = CellLattice<Point>::middle(target_.grid().place(cell)), away = p - target_.nearest(p);
+        there += std::sqrt(glm::dot(away, away));
     }
     const std::vector<std::int64_t> squared = squared_distances(mine);
-    for (const Vec2 p : target_.points())
-        back += std::sqrt(static_cast<double>(
-            squared[static_cast<std::size_t>(p.y) * width + static_cast<std::size_t>(p.x)]));
+    for (const Point p : target_.points())
+        back += std::sqrt(static_cast<double>(squared[target_.grid().index(p)]));
     result.chamfer =
         there / static_cast<double>(cells_.size()) + back / static_cast<double>(target_.points().size());
     return result;
 }
+
+template<typename Map> double collage_distance(const TargetOf<Map>& target, const std::vector<Map>& maps) {
+    CellSet images = target.cells();
+    images.cells.assign(images.cells.size(), false);
+    double beyond = 0;
+    for (const typename Map::Point p : target.points())
+        for (const Map& map : maps) {
+            const typename Map::Point q = map(p);
+            if (target.grid().holds(q)) {
+                images.cells[target.grid().index(q)] = true;
+            } else { // to some point of the target: no less than the distance
+                beyond = std::max(beyond, glm::length(q - target.nearest(q)));
+            }
+        }
+    if (std::find(images.cells.begin(), images.cells.end(), true) == images.cells.end()) return beyond;
+    return std::max(beyond, hausdorff_distance(target.cells(), images));
+}
+
+template class AttractorPainterOf<PlaneMap>;
+template class AttractorPainterOf<SpaceMap>;
+template double collage_distance(const Target&, const PlaneMaps&);
+template double collage_distance(const SpaceTarget&, const SpaceMaps&);
 
 } // namespace graftal

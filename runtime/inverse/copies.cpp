@@ -4,29 +4,28 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <numbers>
 #include <utility>
+
+#include <glm/geometric.hpp>
 
 namespace graftal {
 
 namespace {
 
-double length(Vec2 v) {
-    return std::sqrt(v.x * v.x + v.y * v.y);
-}
-
-double rank_of(const SelfCopy& copy) {
+template<typename Map> double rank_of(const SelfCopy<Map>& copy) {
     return static_cast<double>(copy.count) * (1 - 3 * copy.bad);
 }
 
-bool repeats(const SelfCopy& copy, const SelfCopy& other, const Target& target) {
-    double apart = 0;
-    const Vec2 centre = target.centre();
-    for (const Vec2 arm : {Vec2(0, 0), Vec2(2, 0), Vec2(0, 2)}) {
-        const Vec2 p = centre + target.spread() * arm;
-        apart = std::max(apart, length(copy.map(p) - other.map(p)));
+template<typename Map>
+bool repeats(const SelfCopy<Map>& copy, const SelfCopy<Map>& other, const TargetOf<Map>& target) {
+    const typename Map::Point centre = target.centre();
+    double apart = glm::length(copy.map(centre) - other.map(centre));
+    for (int k = 0; k < centre.length(); ++k) {
+        typename Map::Point p = centre;
+        p[k] += 2 * target.spread();
+        apart = std::max(apart, glm::length(copy.map(p) - other.map(p)));
     }
-    if (apart < 3) return true;
+    if (apart < 3 * target.fineness) return true;
     std::size_t both = 0, either = 0;
     for (std::size_t i = 0; i < copy.covered.size(); ++i) {
         both += static_cast<std::size_t>(std::popcount(copy.covered[i] & other.covered[i]));
@@ -42,8 +41,9 @@ struct PartialCover {
 };
 
 /// The covers with one copy more: the best few for each.
-std::vector<PartialCover> longer(const std::vector<PartialCover>& covers, const std::vector<SelfCopy>& copies,
-                                 double samples, std::size_t beam) {
+template<typename Map>
+std::vector<PartialCover> longer(const std::vector<PartialCover>& covers,
+                                 const std::vector<SelfCopy<Map>>& copies, double samples, std::size_t beam) {
     constexpr double price_of_map = 0.012;
     std::vector<PartialCover> result;
     for (const PartialCover& cover : covers) {
@@ -93,74 +93,88 @@ std::size_t count_of(const SampleSet& set) {
     return count;
 }
 
-SampleSet covered_by(const PlaneMap& map, const Target& target, double reach_px) {
-    const std::span<const Vec2> samples = target.samples();
+template<typename Map> SampleSet covered_by(const Map& map, const TargetOf<Map>& target, double reach_px) {
+    const std::span<const typename Map::Point> samples = target.samples();
     SampleSet set((samples.size() + 63) / 64, 0);
-    const PlaneMap back = bounded_inverse(map, target.centre(), 0.01);
+    const Map back = bounded_inverse(map, target.centre(), 0.01);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        const Vec2 away = map(target.nearest(back(samples[i]))) - samples[i];
-        if (away.x * away.x + away.y * away.y <= reach_px * reach_px)
-            set[i / 64] |= std::uint64_t{1} << (i % 64);
+        const typename Map::Point away = map(target.nearest(back(samples[i]))) - samples[i];
+        if (glm::dot(away, away) <= reach_px * reach_px) set[i / 64] |= std::uint64_t{1} << (i % 64);
     }
     return set;
 }
 
-CopySearch::CopySearch(const Target& target, const MapRules& rules) : target_(target), rules_(rules) {
+template<typename Map>
+CopySearch<Map>::CopySearch(const TargetOf<Map>& target, const MapRules& rules)
+    : target_(target), rules_(rules) {
     Draws draws(CounterRandom(2), 0);
     coarse_ = target.drawn(120, draws);
     points_ = {target.drawn(400, draws), target.drawn_edge(300, draws)};
 }
 
-double CopySearch::outside(const PlaneMap& map, std::span<const Vec2> points, double& mean_px) const {
+template<typename Map>
+double CopySearch<Map>::outside(const Map& map, std::span<const Point> points, double& mean_px) const {
     double sum = 0;
     std::size_t bad = 0;
-    for (const Vec2 p : points) {
-        const Vec2 q = map(p);
-        const double away = length(q - target_.nearest(q));
+    for (const Point p : points) {
+        const Point q = map(p);
+        const double away = glm::length(q - target_.nearest(q));
         sum += std::min(away, 8.0);
-        bad += away > 1.6;
+        bad += away > target_.beside;
     }
     mean_px = sum / static_cast<double>(points.size());
     return static_cast<double>(bad) / static_cast<double>(points.size());
 }
 
-std::optional<SelfCopy> CopySearch::find(Draws& draws, std::uint64_t& work, const Vec2* where) const {
-    constexpr double pi = std::numbers::pi;
-    constexpr std::array<double, 2> coarse_tau_px = {16, 6};
-    constexpr std::array<double, 3> fine_tau_px = {3, 1.5, 0.5};
-    const double least = where ? 0.05 : 0.12, most = 0.85;
-    PlaneStretch stretch;
-    stretch.largest = std::exp(draws.between(std::log(least), std::log(most)));
-    stretch.least = stretch.largest * std::exp(-0.3 * std::abs(draws.normal()));
-    if (where && draws.unit() < 0.15) stretch.least *= 0.02; // such as the stem of a fern
-    if (rules_.similar) stretch.least = stretch.largest;
-    if (draws.unit() < 0.5) stretch.least = -stretch.least;
-    stretch.left_rad = draws.between(-pi, pi);
-    stretch.right_rad = draws.between(-pi, pi);
-    const std::vector<Vec2>& points = target_.points();
-    const Vec2 from = points[draws.below(points.size())];
-    SelfCopy copy;
-    copy.map = map_of(stretch, from, where ? *where : points[draws.below(points.size())]);
+template<typename Map>
+Map CopySearch<Map>::first_map(Draws& draws, std::uint64_t& work, const Point* where) const {
+    // Space has many more directions than the plane, so that a look at a few points pays before a map grows.
+    constexpr int tries = Map::dimensions == 2 ? 1 : 24;
+    constexpr std::size_t looked_at = 30;
+    const std::vector<Point>& points = target_.points();
+    Map best;
+    double least = 1e300;
+    for (int i = 0; i < tries; ++i) {
+        const Map linear = Map::random(where != nullptr, rules_.similar, draws);
+        const Point from = points[draws.below(points.size())];
+        const Map map = linear.taking(from, where ? *where : points[draws.below(points.size())]);
+        if (tries == 1) return map;
+        const double value = growth_value(target_, std::span(coarse_).first(looked_at), 8, map);
+        if (value < least) {
+            least = value;
+            best = map;
+        }
+    }
+    work += tries * looked_at;
+    return best;
+}
+
+template<typename Map>
+std::optional<SelfCopy<Map>> CopySearch<Map>::find(Draws& draws, std::uint64_t& work,
+                                                   const Point* where) const {
+    const std::array<double, 2> coarse_tau_px = {16 * target_.fineness, 6 * target_.fineness};
+    const std::array<double, 3> fine_tau_px = {3 * target_.fineness, 1.5 * target_.fineness, 0.5};
+    SelfCopy<Map> copy;
+    copy.map = first_map(draws, work, where);
     work += grow(target_, coarse_, coarse_tau_px, 8, rules_, copy.map);
     double mean_px = 0;
     outside(copy.map, coarse_, mean_px);
-    if (mean_px > 4.5) return std::nullopt;
+    if (mean_px > 4.5 * target_.fineness) return std::nullopt;
     work += grow(target_, points_.inner, fine_tau_px, 6, rules_, copy.map) + coarse_.size();
     return snapped(copy.map, 4, draws, work);
 }
 
-double CopySearch::merit(const PlaneMap& map, std::span<const Vec2> wanted, double reach_px,
-                         std::uint64_t& work) const {
+template<typename Map>
+double CopySearch<Map>::merit(const Map& map, std::span<const Point> wanted, double reach_px,
+                              std::uint64_t& work) const {
     const double squared_reach = reach_px * reach_px;
-    const auto share = [&](Vec2 away) {
-        return std::min(1.0, (away.x * away.x + away.y * away.y) / squared_reach);
-    };
-    const PlaneMap back = bounded_inverse(map, target_.centre(), 0.01);
+    const auto share = [&](Point away) { return std::min(1.0, glm::dot(away, away) / squared_reach); };
+    const Map back = bounded_inverse(map, target_.centre(), 0.01);
     double missed = 0, outside = 0;
-    for (const Vec2 p : wanted)
+    for (const Point p : wanted)
         missed += share(map(target_.nearest(back(p))) - p);
-    for (const Vec2 p : coarse_) {
-        const Vec2 q = map(p);
+    for (const Point p : coarse_) {
+        const Point q = map(p);
         outside += share(q - target_.nearest(q));
     }
     work += wanted.size() + coarse_.size();
@@ -168,20 +182,23 @@ double CopySearch::merit(const PlaneMap& map, std::span<const Vec2> wanted, doub
            1.5 * outside / static_cast<double>(coarse_.size());
 }
 
-std::optional<SelfCopy> CopySearch::climb(const PlaneMap& map, std::span<const Vec2> wanted, Draws& draws,
-                                          std::uint64_t& work) const {
+template<typename Map>
+std::optional<SelfCopy<Map>> CopySearch<Map>::climb(const Map& map, std::span<const Point> wanted,
+                                                    Draws& draws, std::uint64_t& work) const {
     if (wanted.empty()) wanted = points_.outer;
-    PlaneMap best = map;
-    double size_px = 8;
+    Map best = map;
+    double size_px = 8 * target_.fineness;
     constexpr int steps = 150;
-    for (const double reach_px : {8.0, 4.0, 2.0}) {
+    for (const double scale : {8.0, 4.0, 2.0}) {
+        const double reach_px = std::max(1.5, scale * target_.fineness);
         double merit_of_best = merit(best, wanted, reach_px, work);
         for (int i = 0; i < steps; ++i) {
             const double entry = size_px / (2 * target_.spread());
-            std::array<double, 6> step;
+            std::array<double, Map::entries> step;
             for (std::size_t k = 0; k < step.size(); ++k)
-                step[k] = draws.normal() * (k % 3 == 2 ? 0.7 * size_px : entry);
-            const PlaneMap tried =
+                step[k] =
+                    draws.normal() * (k % (Map::dimensions + 1) == Map::dimensions ? 0.7 * size_px : entry);
+            const Map tried =
                 ruled(moved(best, step.data(), target_.centre(), rules_.most_stretch), target_, rules_);
             const double now = merit(tried, wanted, reach_px, work);
             if (now > merit_of_best) {
@@ -196,12 +213,13 @@ std::optional<SelfCopy> CopySearch::climb(const PlaneMap& map, std::span<const V
     return snapped(best, 2, draws, work);
 }
 
-std::optional<SelfCopy> CopySearch::snapped(const PlaneMap& map, double reach_px, Draws& draws,
-                                            std::uint64_t& work) const {
-    PlaneMaps one(1, map);
+template<typename Map>
+std::optional<SelfCopy<Map>> CopySearch<Map>::snapped(const Map& map, double reach_px, Draws& draws,
+                                                      std::uint64_t& work) const {
+    std::vector<Map> one(1, map);
     for (; reach_px >= 2; reach_px /= 2)
         work += refine(target_, points_, {1, 6, reach_px}, rules_, draws, one);
-    SelfCopy copy;
+    SelfCopy<Map> copy;
     copy.map = one.front();
     double mean_px = 0;
     copy.bad = outside(copy.map, points_.inner, mean_px);
@@ -213,12 +231,14 @@ std::optional<SelfCopy> CopySearch::snapped(const PlaneMap& map, double reach_px
     return copy;
 }
 
-std::vector<SelfCopy> distinct(std::vector<SelfCopy> copies, const Target& target, std::size_t most) {
+template<typename Map>
+std::vector<SelfCopy<Map>> distinct(std::vector<SelfCopy<Map>> copies, const TargetOf<Map>& target,
+                                    std::size_t most) {
     std::stable_sort(copies.begin(), copies.end(),
-                     [](const SelfCopy& a, const SelfCopy& b) { return rank_of(a) > rank_of(b); });
-    std::vector<SelfCopy> result;
-    for (SelfCopy& copy : copies) {
-        const auto same = [&](const SelfCopy& better) { return repeats(copy, better, target); };
+                     [](const SelfCopy<Map>& a, const SelfCopy<Map>& b) { return rank_of(a) > rank_of(b); });
+    std::vector<SelfCopy<Map>> result;
+    for (SelfCopy<Map>& copy : copies) {
+        const auto same = [&](const SelfCopy<Map>& better) { return repeats(copy, better, target); };
         if (std::any_of(result.begin(), result.end(), same)) continue;
         result.push_back(std::move(copy));
         if (result.size() == most) break;
@@ -226,8 +246,9 @@ std::vector<SelfCopy> distinct(std::vector<SelfCopy> copies, const Target& targe
     return result;
 }
 
-std::vector<PlaneMaps> covers(const std::vector<SelfCopy>& copies, const Target& target,
-                              std::size_t most_maps, std::size_t most_covers) {
+template<typename Map>
+std::vector<std::vector<Map>> covers(const std::vector<SelfCopy<Map>>& copies, const TargetOf<Map>& target,
+                                     std::size_t most_maps, std::size_t most_covers) {
     constexpr std::size_t beam = 40;
     const auto samples = static_cast<double>(target.samples().size());
     std::vector<PartialCover> found, current(1);
@@ -239,7 +260,7 @@ std::vector<PlaneMaps> covers(const std::vector<SelfCopy>& copies, const Target&
     std::stable_sort(found.begin(), found.end(),
                      [](const PartialCover& a, const PartialCover& b) { return a.cost < b.cost; });
     if (found.size() > most_covers) found.resize(most_covers);
-    std::vector<PlaneMaps> result;
+    std::vector<std::vector<Map>> result;
     for (const PartialCover& cover : found) {
         result.emplace_back();
         for (const std::uint16_t i : cover.chosen)
@@ -247,5 +268,16 @@ std::vector<PlaneMaps> covers(const std::vector<SelfCopy>& copies, const Target&
     }
     return result;
 }
+
+#define GRAFTAL_COPIES(Map)                                                                                  \
+    template class CopySearch<Map>;                                                                          \
+    template SampleSet covered_by(const Map&, const TargetOf<Map>&, double);                                 \
+    template std::vector<SelfCopy<Map>> distinct(std::vector<SelfCopy<Map>>, const TargetOf<Map>&,           \
+                                                 std::size_t);                                               \
+    template std::vector<std::vector<Map>> covers(const std::vector<SelfCopy<Map>>&, const TargetOf<Map>&,   \
+                                                  std::size_t, std::size_t);
+GRAFTAL_COPIES(PlaneMap)
+GRAFTAL_COPIES(SpaceMap)
+#undef GRAFTAL_COPIES
 
 } // namespace graftal

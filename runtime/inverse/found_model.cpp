@@ -7,11 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "compiler/chaos/ordinary_ifs.h"
 #include "compiler/support/number.h"
 #include "compiler/support/printable.h"
 #include "runtime/inverse/occupancy.h"
-#include "runtime/render/picture_session.h"
+#include "runtime/inverse/start_model.h"
 #include "runtime/system/worker_threads.h"
 
 namespace graftal {
@@ -165,58 +164,17 @@ std::vector<Rgb> colours_of(const Target& target, const TargetPicture& picture, 
 /// Maps of a model to begin with, in cells.
 std::optional<PlaneMaps> start_of(const FindOptions& options, const Frame& frame, const Target& target,
                                   Compilation& compilation) {
+    const auto known =
+        starting_maps(options.start, options.compile, options.search.most_maps, true, compilation);
+    if (!known) return std::nullopt;
     PlaneMaps maps;
-    if (options.start.empty()) return maps;
-    PictureSession session(options.start);
-    const std::shared_ptr<const AnalysedModel> model = session.analysed(options.compile, compilation);
-    if (!model) return std::nullopt;
-    const std::optional<OrdinaryIfs> ifs = ordinary_ifs(model->graph, model->components);
-    const auto flat = [](const Instance& map) { return is_flat(map.parent_from_child); };
-    const Object& root = model->graph.objects[model->graph.root];
-    if (!ifs || !ifs->condensation.empty() || !std::all_of(ifs->maps.begin(), ifs->maps.end(), flat)) {
-        compilation.diagnostics
-            .error(root.span,
-                   fmt::format("'{}' is not a flat iterated function system, which the search could "
-                               "begin with",
-                               root.name))
-            .with_hint("start with a .rifs of maps of the plane, without 'follow' and 'condense'");
-        return std::nullopt;
-    }
-    if (ifs->maps.size() > options.search.most_maps) {
-        compilation.diagnostics
-            .error(root.span, fmt::format("this system has {} maps, more than the {} that the search may use",
-                                          ifs->maps.size(), options.search.most_maps))
-            .with_hint(fmt::format("allow more: --maps {}", ifs->maps.size()));
-        return std::nullopt;
-    }
-    for (const Instance& instance : ifs->maps) {
-        const Mat3& m = instance.parent_from_child.linear;
-        const Vec3& t = instance.parent_from_child.translation;
+    for (const Affine& map : *known) {
+        const Mat3& m = map.linear;
+        const Vec3& t = map.translation;
         maps.push_back(ruled(frame.in_cells({m[0][0], m[1][0], m[0][1], m[1][1], t.x, t.y}), target,
                              options.search.rules));
     }
     return maps;
-}
-
-/// The Hausdorff distance of the target from the union of its images, each moved to its nearest cell.
-double collage_distance(const Target& target, const PlaneMaps& maps) {
-    CellSet set(target.width(), target.height()), images = set;
-    double beyond = 0;
-    for (const Vec2 p : target.points()) {
-        set.cells[set.index(static_cast<int>(p.x), static_cast<int>(p.y))] = true;
-        for (const PlaneMap& map : maps) {
-            const Vec2 q = map(p);
-            if (q.x >= 0 && q.y >= 0 && q.x < set.width && q.y < set.height) {
-                images.cells[images.index(static_cast<int>(q.x), static_cast<int>(q.y))] = true;
-            } else {
-                const Vec2 away =
-                    q - target.nearest(q); // to some point of the target: no less than the distance
-                beyond = std::max(beyond, std::sqrt(away.x * away.x + away.y * away.y));
-            }
-        }
-    }
-    if (std::find(images.cells.begin(), images.cells.end(), true) == images.cells.end()) return beyond;
-    return std::max(beyond, hausdorff_distance(set, images));
 }
 
 } // namespace
@@ -255,8 +213,10 @@ std::optional<FoundModel> find_model(const FindOptions& options, const CancelFla
     std::optional<PlaneMaps> start = start_of(options, frame, target, compilation);
     if (!start) return std::nullopt;
     search_options.start = std::move(*start);
-    FoundSystem system = (options.occupancy ? search_occupancy : search)(
-        target, search_options, WorkerThreads(options.threads), cancel, options.on_progress);
+    FoundSystem system =
+        (options.occupancy ? search_occupancy : search<PlaneMap>)(target, search_options,
+                                                                  WorkerThreads(options.threads), cancel,
+                                                                  options.on_progress);
 
     // The largest image comes first. The numbers are measured as they are written.
     std::stable_sort(system.maps.begin(), system.maps.end(), [](const PlaneMap& a, const PlaneMap& b) {

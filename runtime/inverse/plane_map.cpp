@@ -17,16 +17,43 @@ PlaneStretch stretch_of(const PlaneMap& map) {
 PlaneMap map_of(const PlaneStretch& s, Vec2 from, Vec2 to) {
     const double cl = std::cos(s.left_rad), sl = std::sin(s.left_rad);
     const double cr = std::cos(s.right_rad), sr = std::sin(s.right_rad);
-    PlaneMap map{cl * s.largest * cr - sl * s.least * sr,
-                 -cl * s.largest * sr - sl * s.least * cr,
-                 sl * s.largest * cr + cl * s.least * sr,
-                 -sl * s.largest * sr + cl * s.least * cr,
-                 0,
-                 0};
-    const Vec2 shift = to - map(from);
-    map.e = shift.x;
-    map.f = shift.y;
-    return map;
+    const PlaneMap map{cl * s.largest * cr - sl * s.least * sr,
+                       -cl * s.largest * sr - sl * s.least * cr,
+                       sl * s.largest * cr + cl * s.least * sr,
+                       -sl * s.largest * sr + cl * s.least * cr,
+                       0,
+                       0};
+    return map.taking(from, to);
+}
+
+PlaneMap PlaneMap::taking(Vec2 from, Vec2 to) const {
+    const PlaneMap linear{a, b, c, d, 0, 0};
+    const Vec2 shift = to - linear(from);
+    return {a, b, c, d, shift.x, shift.y};
+}
+
+std::array<double, 6> PlaneMap::log_slope() const {
+    double size = determinant();
+    if (std::abs(size) < 1e-7) size = 1e-7;
+    return {d / size, -c / size, 0, -b / size, a / size, 0};
+}
+
+std::array<std::array<double, 6>, 4> PlaneMap::similar_steps() const {
+    const double mirror = determinant() < 0 ? -1 : 1;
+    return {{{1, 0, 0, 0, mirror, 0}, {0, -mirror, 0, 1, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 1}}};
+}
+
+PlaneMap PlaneMap::random(bool missed, bool similar, Draws& draws) {
+    constexpr double pi = std::numbers::pi;
+    PlaneStretch stretch;
+    stretch.largest = std::exp(draws.between(std::log(missed ? 0.05 : 0.12), std::log(0.85)));
+    stretch.least = stretch.largest * std::exp(-0.3 * std::abs(draws.normal()));
+    if (missed && draws.unit() < 0.15) stretch.least *= 0.02; // such as the stem of a fern
+    if (similar) stretch.least = stretch.largest;
+    if (draws.unit() < 0.5) stretch.least = -stretch.least;
+    stretch.left_rad = draws.between(-pi, pi);
+    stretch.right_rad = draws.between(-pi, pi);
+    return map_of(stretch, Vec2(0.0), Vec2(0.0));
 }
 
 double largest_stretch(const PlaneMaps& maps) {
@@ -38,27 +65,20 @@ double largest_stretch(const PlaneMaps& maps) {
 
 PlaneMap moved(const PlaneMap& map, const double* step, Vec2 centre, double most) {
     const Vec2 image = map(centre) + Vec2(step[2], step[5]);
-    PlaneMap result{map.a + step[0], map.b + step[1], map.c + step[3], map.d + step[4], 0, 0};
+    const PlaneMap result{map.a + step[0], map.b + step[1], map.c + step[3], map.d + step[4], 0, 0};
     PlaneStretch stretch = stretch_of(result);
     if (stretch.largest > most) {
         stretch.largest = most;
         stretch.least = std::clamp(stretch.least, -most, most);
         return map_of(stretch, centre, image);
     }
-    const Vec2 shift = image - result(centre);
-    result.e = shift.x;
-    result.f = shift.y;
-    return result;
+    return result.taking(centre, image);
 }
 
 PlaneMap nearest_similarity(const PlaneMap& map, Vec2 centre) {
     const double mirror = map.determinant() < 0 ? -1 : 1;
     const double p = (map.a + mirror * map.d) / 2, q = (map.c - mirror * map.b) / 2;
-    PlaneMap result{p, -mirror * q, q, mirror * p, 0, 0};
-    const Vec2 shift = map(centre) - result(centre);
-    result.e = shift.x;
-    result.f = shift.y;
-    return result;
+    return PlaneMap{p, -mirror * q, q, mirror * p, 0, 0}.taking(centre, map(centre));
 }
 
 PlaneMap bounded_inverse(const PlaneMap& map, Vec2 centre, double least) {

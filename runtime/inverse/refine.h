@@ -17,19 +17,25 @@ struct MapRules {
 };
 
 /// The map with the rules kept; the image of the target's centre stays.
-PlaneMap ruled(const PlaneMap& map, const Target& target, const MapRules& rules);
+template<typename Map> Map ruled(const Map& map, const TargetOf<Map>& target, const MapRules& rules);
 
 /// Points that stand for the target while maps are refined.
-struct FitPoints {
-    std::vector<Vec2> inner; ///< whose images are to lie in the target
-    std::vector<Vec2> outer; ///< that images are to come near
+template<typename Point> struct FitPoints {
+    std::vector<Point> inner; ///< whose images are to lie in the target
+    std::vector<Point> outer; ///< that images are to come near
 };
 
 /// Grows a map w until the target holds no larger image of itself thereabouts: Levenberg and Marquardt's
 /// method (Marquardt 1963) on mean |w p - T|^2 / tau^2 - mu log |det w|, for each length tau in turn. Returns
 /// the work: maps applied to points.
-std::uint64_t grow(const Target& target, std::span<const Vec2> inner, std::span<const double> tau_px,
-                   int iterations, const MapRules& rules, PlaneMap& map);
+template<typename Map>
+std::uint64_t grow(const TargetOf<Map>& target, std::span<const typename Map::Point> inner,
+                   std::span<const double> tau_px, int iterations, const MapRules& rules, Map& map);
+
+/// The value that grow() makes least, for one length tau.
+template<typename Map>
+double growth_value(const TargetOf<Map>& target, std::span<const typename Map::Point> inner, double tau_px,
+                    const Map& map);
 
 struct LevelFit {
     int levels = 1; ///< words of so many maps are compared
@@ -43,7 +49,8 @@ inline constexpr int most_levels = 6;
 /// ways, by Levenberg and Marquardt's method. With one level that is the distance of Barnsley's collage
 /// theorem (1985), with more it tends to the distance of the attractor itself. The word of a point is found
 /// letter by letter, by the nearest image. Returns the work.
-std::uint64_t refine(const Target& target, const FitPoints& points, const LevelFit& fit,
-                     const MapRules& rules, Draws& draws, PlaneMaps& maps);
+template<typename Map>
+std::uint64_t refine(const TargetOf<Map>& target, const FitPoints<typename Map::Point>& points,
+                     const LevelFit& fit, const MapRules& rules, Draws& draws, std::vector<Map>& maps);
 
 } // namespace graftal

@@ -16,22 +16,33 @@ namespace {
 
 constexpr double seconds_of_map = 1.8e-8; ///< a map applied to a point, with the nearest cell of the target
 
-struct System {
-    PlaneMaps maps;
+/// The weight of the strict agreement. In space the cells are coarser, and have more neighbours that count.
+template<typename Map> constexpr double strict_weight = Map::dimensions == 2 ? 0.1 : 0.4;
+/// The strict agreement of a target that is found.
+template<typename Map> constexpr double strict_enough = Map::dimensions == 2 ? 0 : 0.75;
+
+template<typename Map> struct System {
+    std::vector<Map> maps;
     double value = -1;
     SetAgreement agreement;
 };
 
 /// One task's own: nothing that others write.
-struct Task {
-    AttractorPainter& painter;
+template<typename Map> struct Task {
+    AttractorPainterOf<Map>& painter;
     Draws draws;
     std::uint64_t work = 0;
 };
 
-class Search {
+template<typename Map> class Search {
   public:
-    Search(const Target& target, const SearchOptions& options, const Workers& workers,
+    using Point = typename Map::Point;
+    using Maps = std::vector<Map>;
+    using System = graftal::System<Map>;
+    using Task = graftal::Task<Map>;
+    using SelfCopy = graftal::SelfCopy<Map>;
+
+    Search(const TargetOf<Map>& target, const SearchOptionsOf<Map>& options, const Workers& workers,
            const CancelFlag& cancel, const std::function<void(const SearchProgress&)>& on_progress)
         : target_(target), options_(options), workers_(workers), cancel_(cancel), on_progress_(on_progress),
           copies_(target, options.rules), painters_(static_cast<std::size_t>(workers.count())) {
@@ -42,7 +53,7 @@ class Search {
         few_points_.outer = points_.outer;
     }
 
-    FoundSystem run() {
+    FoundSystemOf<Map> run() {
         keep({simplest()});
         if (!options_.start.empty()) keep({judged(options_.start)});
         for (const double until : {0.03, 0.1, 0.3}) {
@@ -63,7 +74,10 @@ class Search {
 
     double seconds() const { return static_cast<double>(work_) * seconds_of_map; }
     double fraction() const { return seconds() / options_.seconds; }
-    bool solved() const { return !lines_.empty() && lines_.front().agreement.tolerant >= 0.998; }
+    bool solved() const {
+        return !lines_.empty() && lines_.front().agreement.tolerant >= 0.998 &&
+               lines_.front().agreement.strict >= strict_enough<Map>;
+    }
     bool going_on(double until) const { return fraction() < until && !solved() && !cancel_.raised(); }
 
     /// Runs tasks number 0 to count - 1, each with random numbers of its own.
@@ -72,8 +86,8 @@ class Search {
         const CounterRandom random = CounterRandom(options_.seed).sequence(++batches_);
         workers_.for_each(count, [&](int worker, std::uint64_t number) {
             if (cancel_.raised()) return;
-            std::unique_ptr<AttractorPainter>& painter = painters_[static_cast<std::size_t>(worker)];
-            if (!painter) painter = std::make_unique<AttractorPainter>(target_);
+            std::unique_ptr<AttractorPainterOf<Map>>& painter = painters_[static_cast<std::size_t>(worker)];
+            if (!painter) painter = std::make_unique<AttractorPainterOf<Map>>(target_);
             Task task{*painter, Draws(random, number)};
             work(task, static_cast<std::size_t>(number));
             costs[static_cast<std::size_t>(number)] = task.work;
@@ -86,10 +100,11 @@ class Search {
     }
 
     double value_of(const SetAgreement& agreement, std::size_t maps) const {
-        return 0.9 * agreement.tolerant + 0.1 * agreement.strict - 0.004 * static_cast<double>(maps);
+        return (1 - strict_weight<Map>)*agreement.tolerant + strict_weight<Map> * agreement.strict -
+               0.004 * static_cast<double>(maps);
     }
 
-    System judge(Task& task, PlaneMaps maps) const {
+    System judge(Task& task, Maps maps) const {
         System system;
         task.work += task.painter.draw(maps) / 2;
         system.agreement = task.painter.agreement();
@@ -99,7 +114,7 @@ class Search {
         return system;
     }
 
-    System judged(PlaneMaps maps) {
+    System judged(Maps maps) {
         System system;
         tasks(1, [&](Task& task, std::size_t) { system = judge(task, std::move(maps)); });
         return system;
@@ -108,9 +123,9 @@ class Search {
     /// One map that takes everything to the middle of the target: an answer for who interrupts at once.
     System simplest() {
         System system;
-        const Vec2 middle = target_.centre();
-        system.maps = {map_of({0.5, 0.5, 0, 0}, middle, middle)};
-        AttractorPainter painter(target_);
+        const Point middle = target_.centre();
+        system.maps = {Map::half().taking(middle, middle)};
+        AttractorPainterOf<Map> painter(target_);
         painter.draw(system.maps);
         system.agreement = painter.agreement();
         system.value = value_of(system.agreement, 1);
@@ -154,7 +169,7 @@ class Search {
 
     /// The better of the system and its refinement by words of so many maps.
     void refine_to(Task& task, System& system, int levels, int iterations, double reach_px) const {
-        PlaneMaps maps = system.maps;
+        Maps maps = system.maps;
         task.work += refine(target_, levels == 1 ? points_ : few_points_, {levels, iterations, reach_px},
                             options_.rules, task.draws, maps);
         System refined = judge(task, std::move(maps));
@@ -162,7 +177,7 @@ class Search {
     }
 
     void cover() {
-        const std::vector<PlaneMaps> collages = covers(pool_, target_, options_.most_maps, 48);
+        const std::vector<Maps> collages = covers(pool_, target_, options_.most_maps, 48);
         work_ += 40 * options_.most_maps * pool_.size() * target_.samples().size() / 64 / 16;
         std::vector<System> systems(collages.size());
         tasks(collages.size(), [&](Task& task, std::size_t i) {
@@ -173,9 +188,9 @@ class Search {
     }
 
     /// Samples that lie in no image of the target under the maps.
-    SampleSet missed_by(Task& task, const PlaneMaps& maps) const {
+    SampleSet missed_by(Task& task, const Maps& maps) const {
         SampleSet covered((target_.samples().size() + 63) / 64, 0);
-        for (const PlaneMap& map : maps) {
+        for (const Map& map : maps) {
             const SampleSet more = covered_by(map, target_);
             for (std::size_t i = 0; i < more.size(); ++i)
                 covered[i] |= more[i];
@@ -189,7 +204,7 @@ class Search {
     }
 
     /// Samples that the attractor does not reach.
-    SampleSet unreached(Task& task, const PlaneMaps& maps) const {
+    SampleSet unreached(Task& task, const Maps& maps) const {
         task.work += task.painter.draw(maps) / 2;
         SampleSet missed((target_.samples().size() + 63) / 64, 0);
         for (std::size_t i = 0; i < target_.samples().size(); ++i)
@@ -209,7 +224,7 @@ class Search {
     /// The copies that cover most of what is missed: of the pool or grown for it, and then moved towards it.
     Ranked copies_for(Task& task, const SampleSet& missed, std::size_t most) const {
         constexpr std::size_t starts = 32, climbs = 5, most_wanted = 300;
-        std::vector<Vec2> places, wanted;
+        std::vector<Point> places, wanted;
         for (std::size_t i = 0; i < target_.samples().size(); ++i)
             if (missed[i / 64] >> (i % 64) & 1) places.push_back(target_.samples()[i]);
         if (places.empty()) return {};
@@ -221,7 +236,7 @@ class Search {
         };
         Ranked ranked;
         for (std::size_t i = 0; i < starts; ++i) {
-            const Vec2 place = places[task.draws.below(places.size())];
+            const Point place = places[task.draws.below(places.size())];
             std::optional<SelfCopy> copy = copies_.find(task.draws, task.work, &place);
             if (copy) ranked.emplace_back(rank(*copy), std::move(*copy));
         }
@@ -242,7 +257,7 @@ class Search {
     System changed(Task& task, const System& system) const {
         const std::size_t count = system.maps.size();
         const double kind = task.draws.unit();
-        PlaneMaps rest = system.maps;
+        Maps rest = system.maps;
         SampleSet missed;
         if (count == 1 || (kind < 0.4 && count < options_.most_maps)) {
             missed = unreached(task, rest);
@@ -254,7 +269,7 @@ class Search {
         }
         System best;
         for (const auto& [gain, copy] : copies_for(task, missed, 2)) {
-            PlaneMaps maps = rest;
+            Maps maps = rest;
             maps.push_back(copy.map);
             task.work += refine(target_, points_, {1, 10, 4}, options_.rules, task.draws, maps);
             System tried = judge(task, std::move(maps));
@@ -270,7 +285,7 @@ class Search {
     /// Drops maps that the system is no worse without.
     void thin(Task& task, System& system) const {
         for (std::size_t i = system.maps.size(); i-- > 0 && system.maps.size() > 2;) {
-            PlaneMaps maps = system.maps;
+            Maps maps = system.maps;
             maps.erase(maps.begin() + static_cast<std::ptrdiff_t>(i));
             System thinner = judge(task, std::move(maps));
             if (thinner.value > system.value) system = std::move(thinner);
@@ -304,12 +319,13 @@ class Search {
         const System& best = lines_.front();
         std::vector<System> systems(batch);
         tasks(batch, [&](Task& task, std::size_t i) {
-            PlaneMaps maps = best.maps;
+            Maps maps = best.maps;
             const double size = step_ * std::exp(task.draws.normal());
-            PlaneMap& map = maps[(i + batches_) % maps.size()];
-            std::array<double, 6> step;
+            Map& map = maps[(i + batches_) % maps.size()];
+            std::array<double, Map::entries> step;
             for (std::size_t k = 0; k < step.size(); ++k)
-                step[k] = size * task.draws.normal() * (k % 3 == 2 ? 0.5 * target_.spread() : 1);
+                step[k] = size * task.draws.normal() *
+                          (k % (Map::dimensions + 1) == Map::dimensions ? 0.5 * target_.spread() : 1);
             map = ruled(moved(map, step.data(), target_.centre(), options_.rules.most_stretch), target_,
                         options_.rules);
             systems[i] = judge(task, std::move(maps));
@@ -319,14 +335,14 @@ class Search {
         step_ = std::clamp(step_ * (lines_.front().value > before ? 1.3 : 0.93), 3e-4, 0.03);
     }
 
-    const Target& target_;
-    const SearchOptions& options_;
+    const TargetOf<Map>& target_;
+    const SearchOptionsOf<Map>& options_;
     const Workers& workers_;
     const CancelFlag& cancel_;
     const std::function<void(const SearchProgress&)>& on_progress_;
-    CopySearch copies_;
-    FitPoints points_, few_points_;
-    std::vector<std::unique_ptr<AttractorPainter>> painters_;
+    CopySearch<Map> copies_;
+    FitPoints<Point> points_, few_points_;
+    std::vector<std::unique_ptr<AttractorPainterOf<Map>>> painters_;
     std::vector<SelfCopy> pool_;
     std::vector<System> lines_; ///< best first
     double step_ = 0.01;        ///< of the random steps
@@ -335,9 +351,19 @@ class Search {
 
 } // namespace
 
-FoundSystem search(const Target& target, const SearchOptions& options, const Workers& workers,
-                   const CancelFlag& cancel, const std::function<void(const SearchProgress&)>& on_progress) {
-    return Search(target, options, workers, cancel, on_progress).run();
+template<typename Map>
+FoundSystemOf<Map> search(const TargetOf<Map>& target, const SearchOptionsOf<Map>& options,
+                          const Workers& workers, const CancelFlag& cancel,
+                          const std::function<void(const SearchProgress&)>& on_progress) {
+    return Search<Map>(target, options, workers, cancel, on_progress).run();
 }
+
+#define GRAFTAL_SEARCH(Map)                                                                                  \
+    template FoundSystemOf<Map> search(const TargetOf<Map>&, const SearchOptionsOf<Map>&, const Workers&,    \
+                                       const CancelFlag&,                                                    \
+                                       const std::function<void(const SearchProgress&)>&);
+GRAFTAL_SEARCH(PlaneMap)
+GRAFTAL_SEARCH(SpaceMap)
+#undef GRAFTAL_SEARCH
 
 } // namespace graftal

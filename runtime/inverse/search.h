@@ -10,12 +10,12 @@
 
 namespace graftal {
 
-struct SearchOptions {
+template<typename Map> struct SearchOptionsOf {
     std::size_t most_maps = 8; ///< at least 2
     MapRules rules;
     double seconds = 30; ///< of one processor, by counted work
     std::uint64_t seed = 1;
-    PlaneMaps start; ///< to begin with, in cells of the target's grid; empty: nothing is known
+    std::vector<Map> start; ///< to begin with, in cells of the target's grid; empty: nothing is known
 };
 
 struct SearchProgress {
@@ -24,11 +24,14 @@ struct SearchProgress {
     std::size_t maps = 0;
 };
 
-struct FoundSystem {
-    PlaneMaps maps; ///< at least one
+template<typename Map> struct FoundSystemOf {
+    std::vector<Map> maps; ///< at least one
     SetAgreement agreement;
     double seconds = 0; ///< of counted work
 };
+
+using SearchOptions = SearchOptionsOf<PlaneMap>;
+using FoundSystem = FoundSystemOf<PlaneMap>;
 
 /// Searches for an iterated function system whose attractor equals the target. It depends on target and
 /// options, not on the number of workers: work is counted, not timed. A raised flag ends it early, with the
@@ -38,7 +41,9 @@ struct FoundSystem {
 /// them, and each cover is refined as a collage. Then rounds try to better the best systems: they drop a map,
 /// or add one for a part that is missed, and refine all by words of several maps. At last random steps climb
 /// the agreement itself.
-FoundSystem search(const Target& target, const SearchOptions& options, const Workers& workers,
-                   const CancelFlag& cancel, const std::function<void(const SearchProgress&)>& on_progress);
+template<typename Map>
+FoundSystemOf<Map> search(const TargetOf<Map>& target, const SearchOptionsOf<Map>& options,
+                          const Workers& workers, const CancelFlag& cancel,
+                          const std::function<void(const SearchProgress&)>& on_progress);
 
 } // namespace graftal

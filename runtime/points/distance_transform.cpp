@@ -12,18 +12,19 @@ constexpr std::int64_t nowhere = -1;
 /// Down each column: the distance to the nearest cell of the set in it.
 std::vector<std::int64_t> column_distances(const CellSet& set) {
     std::vector<std::int64_t> distance(set.cells.size(), nowhere);
-    for (int x = 0; x < set.width; ++x) {
-        const auto sweep = [&](int first, int last, int step) {
-            std::int64_t since = nowhere;
-            for (int y = first; y != last; y += step) {
-                since = set.at(x, y) ? 0 : since == nowhere ? nowhere : since + 1;
-                std::int64_t& here = distance[set.index(x, y)];
-                if (since != nowhere && (here == nowhere || since < here)) here = since;
-            }
-        };
-        sweep(0, set.height, 1);
-        sweep(set.height - 1, -1, -1);
-    }
+    for (int z = 0; z < set.depth; ++z)
+        for (int x = 0; x < set.width; ++x) {
+            const auto sweep = [&](int first, int last, int step) {
+                std::int64_t since = nowhere;
+                for (int y = first; y != last; y += step) {
+                    since = set.at(x, y, z) ? 0 : since == nowhere ? nowhere : since + 1;
+                    std::int64_t& here = distance[set.index(x, y, z)];
+                    if (since != nowhere && (here == nowhere || since < here)) here = since;
+                }
+            };
+            sweep(0, set.height, 1);
+            sweep(set.height - 1, -1, -1);
+        }
     return distance;
 }
 
@@ -67,38 +68,53 @@ class Envelope {
     std::vector<Parabola> parabolas_;
 };
 
+/// Calls put(cell, nearest, squared) for each cell: a nearest cell of the set.
+template<typename Put> void for_each_nearest(const CellSet& set, const Put& put) {
+    std::vector<std::int64_t> squared = column_distances(set);
+    std::vector<std::size_t> nearest(set.depth > 1 ? set.cells.size() : 0);
+    std::vector<std::int64_t> down(static_cast<std::size_t>(set.width));
+    Envelope envelope;
+    for (int z = 0; z < set.depth; ++z)
+        for (int y = 0; y < set.height; ++y) {
+            envelope.clear();
+            for (int x = 0; x < set.width; ++x) {
+                const std::int64_t away = down[static_cast<std::size_t>(x)] = squared[set.index(x, y, z)];
+                if (away != nowhere) envelope.add(x, away * away);
+            }
+            envelope.walk(set.width, [&](int x, int at, std::int64_t value) {
+                const int away = static_cast<int>(down[static_cast<std::size_t>(at)]);
+                const bool above = y - away >= 0 && set.at(at, y - away, z);
+                const std::size_t cell = set.index(x, y, z),
+                                  found = set.index(at, above ? y - away : y + away, z);
+                if (set.depth == 1) return put(cell, found, value);
+                squared[cell] = value;
+                nearest[cell] = found;
+            });
+        }
+    if (set.depth == 1) return;
+    for (int y = 0; y < set.height; ++y)
+        for (int x = 0; x < set.width; ++x) {
+            envelope.clear();
+            for (int z = 0; z < set.depth; ++z)
+                if (const std::int64_t there = squared[set.index(x, y, z)]; there != nowhere)
+                    envelope.add(z, there);
+            envelope.walk(set.depth, [&](int z, int at, std::int64_t value) {
+                put(set.index(x, y, z), nearest[set.index(x, y, at)], value);
+            });
+        }
+}
+
 } // namespace
 
 std::vector<std::int64_t> squared_distances(const CellSet& set) {
-    std::vector<std::int64_t> squared = column_distances(set);
-    Envelope envelope;
-    for (int y = 0; y < set.height; ++y) {
-        envelope.clear();
-        for (int x = 0; x < set.width; ++x) {
-            const std::int64_t down = squared[set.index(x, y)];
-            if (down != nowhere) envelope.add(x, down * down);
-        }
-        envelope.walk(set.width, [&](int x, int, std::int64_t value) { squared[set.index(x, y)] = value; });
-    }
+    std::vector<std::int64_t> squared(set.cells.size());
+    for_each_nearest(set, [&](std::size_t cell, std::size_t, std::int64_t value) { squared[cell] = value; });
     return squared;
 }
 
 std::vector<std::size_t> nearest_cells(const CellSet& set) {
-    const std::vector<std::int64_t> down = column_distances(set);
     std::vector<std::size_t> nearest(set.cells.size());
-    Envelope envelope;
-    for (int y = 0; y < set.height; ++y) {
-        envelope.clear();
-        for (int x = 0; x < set.width; ++x) {
-            const std::int64_t away = down[set.index(x, y)];
-            if (away != nowhere) envelope.add(x, away * away);
-        }
-        envelope.walk(set.width, [&](int x, int at, std::int64_t) {
-            const int away = static_cast<int>(down[set.index(at, y)]);
-            const bool above = y - away >= 0 && set.at(at, y - away);
-            nearest[set.index(x, y)] = set.index(at, above ? y - away : y + away);
-        });
-    }
+    for_each_nearest(set, [&](std::size_t cell, std::size_t found, std::int64_t) { nearest[cell] = found; });
     return nearest;
 }
 

@@ -6,23 +6,28 @@
 
 namespace graftal {
 
-/// Cells of a grid that belong to a set; cell (x, y) stands for its middle.
+/// Cells of a grid that belong to a set; cell (x, y) stands for its middle. In space, the cells are cubes.
 struct CellSet {
     int width = 0;
     int height = 0;
+    int depth = 1; ///< in the plane: 1
     std::vector<bool> cells;
 
-    CellSet(int w, int h)
-        : width(w), height(h), cells(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), false) {}
-    std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    CellSet(int w, int h, int d = 1)
+        : width(w), height(h), depth(d),
+          cells(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(d),
+                false) {}
+    std::size_t index(int x, int y, int z = 0) const {
+        const auto row =
+            static_cast<std::size_t>(z) * static_cast<std::size_t>(height) + static_cast<std::size_t>(y);
+        return row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
     }
-    bool at(int x, int y) const { return cells[index(x, y)]; }
+    bool at(int x, int y, int z = 0) const { return cells[index(x, y, z)]; }
 };
 
 /// For every cell the squared distance to the nearest cell of the set, exact (Felzenszwalb and Huttenlocher
-/// 2012: lower envelopes of parabolas, row by row after column by column). O(cells). Requires a set that is
-/// not empty.
+/// 2012: lower envelopes of parabolas, row by row after column by column, and in space at last front to
+/// back). O(cells). Requires a set that is not empty.
 std::vector<std::int64_t> squared_distances(const CellSet& set);
 
 /// For every cell the index of a nearest cell of the set, by squared_distances() and at its price. Requires a

@@ -47,6 +47,8 @@ TEST_F(CommandLine, PointsUsage) {
         {"fit a.lsys", "'a.lsys' is the drawing: name another file by -o"},
         {"fit a.svg --maps 3", "--maps, --similar, --objective, --color and --start are for pictures"},
         {"fit a.svg --objective occupancy", "--objective, --color and --start are for pictures"},
+        {"fit a.ply --light", "--threshold and --light are for pictures, and not for clouds and meshes"},
+        {"fit a.obj --color", "--objective and --color are for pictures, and not for clouds and meshes"},
         {"fit a.png --objective far", "--objective: 'far' is not near or occupancy"},
         {"fit a.png --tolerance 0.1", "--tolerance is for drawings"},
         {"fit a.svg --tolerance 0.5", "--tolerance: '0.5' is not a number from 1e-06 to 0.2"},
@@ -174,6 +176,38 @@ TEST_F(CommandLine, Fit) {
     EXPECT_EQ(stopped.status, 124) << "timeout's own";
     EXPECT_THAT(read("w.rifs"), HasSubstr("codes 2d"));
     EXPECT_EQ(files(), "g.rifs t.png t.rifs u.rifs w.rifs");
+}
+
+TEST_F(CommandLine, FitInSpace) {
+    const std::string model = "'" + source_path("scenes/ifs/sierpinski_tetrahedron.rifs") + "'";
+    ASSERT_EQ(graftal("points " + model + " --points 1e5 -o t.ply -q").status, 0);
+    const RunResult text = graftal("fit t.ply --work 8");
+    EXPECT_EQ(text.status, 0) << text.err;
+    EXPECT_THAT(text.err, HasSubstr("t.rifs: 4 maps, each shortens to 0.5"));
+    EXPECT_THAT(text.err, HasSubstr("those with some of 100000 points; a cell is "));
+    EXPECT_THAT(read("t.rifs"),
+                HasSubstr("found for the cloud t.ply of 100000 points:\n#   graftal fit t.ply"));
+    // The model has the coordinates of the target: the box from -1 to 1.
+    const auto stats = nlohmann::json::parse(graftal("stats t.rifs --json").out);
+    for (const double low : stats["bounds"]["min"])
+        EXPECT_NEAR(low, -1, 0.15);
+    for (const double high : stats["bounds"]["max"])
+        EXPECT_NEAR(high, 1, 0.15);
+    EXPECT_EQ(graftal("render t.rifs --size 64x64 -q").status, 0);
+    const auto json = nlohmann::json::parse(
+        graftal("fit t.ply --work 8 --threads 1 -o u.rifs --json -q --start t.rifs").out);
+    EXPECT_EQ(json["maps"].size(), 4);
+    EXPECT_EQ(json["maps"][0].size(), 12);
+    EXPECT_GE(json["iou_within_a_cell"], 0.99);
+    EXPECT_EQ(graftal("fit none.ply").status, 3);
+    write("empty.ply", "");
+    const RunResult empty = graftal("fit empty.ply");
+    EXPECT_EQ(empty.status, 1);
+    EXPECT_THAT(empty.err, HasSubstr("error: the target 'empty.ply' is of no use: it has no points"));
+    const RunResult stopped =
+        shell("timeout -s INT 2 \"$graftal\" fit t.ply --similar --maps 2 --work 1e6 -o w.rifs -q");
+    EXPECT_EQ(stopped.status, 124) << "timeout's own";
+    EXPECT_THAT(read("w.rifs"), HasSubstr("codes 3d"));
 }
 
 TEST_F(CommandLine, FitDrawings) {

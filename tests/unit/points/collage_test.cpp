@@ -15,9 +15,9 @@
 namespace graftal {
 namespace {
 
-CellSet random_set(int width, int height, double share, unsigned seed) {
+CellSet random_set(int width, int height, double share, unsigned seed, int depth = 1) {
     std::mt19937 random(seed);
-    CellSet set(width, height);
+    CellSet set(width, height, depth);
     for (std::size_t i = 0; i < set.cells.size(); ++i)
         set.cells[i] = std::uniform_real_distribution<>(0, 1)(random) < share;
     set.cells[set.cells.size() / 3] = true;
@@ -27,22 +27,30 @@ CellSet random_set(int width, int height, double share, unsigned seed) {
 TEST(DistanceTransform, IsExact) {
     for (unsigned seed = 0; seed < 60; ++seed) {
         const int width = 1 + static_cast<int>(seed * 7 % 23), height = 1 + static_cast<int>(seed * 5 % 19);
-        const CellSet set = random_set(width, height, seed % 3 ? 0.02 : 0.3, seed);
+        const int depth = seed % 2 ? 1 : 1 + static_cast<int>(seed % 7);
+        const CellSet set = random_set(width, height, seed % 3 ? 0.02 : 0.3, seed, depth);
         const std::vector<std::int64_t> squared = squared_distances(set);
         const std::vector<std::size_t> nearest = nearest_cells(set);
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x) {
-                std::int64_t least = INT64_MAX;
-                for (int v = 0; v < height; ++v)
-                    for (int u = 0; u < width; ++u)
-                        if (set.at(u, v))
-                            least = std::min<std::int64_t>(least, (u - x) * (u - x) + (v - y) * (v - y));
-                ASSERT_EQ(squared[set.index(x, y)], least) << seed << ": " << x << ", " << y;
-                const std::size_t cell = nearest[set.index(x, y)];
-                ASSERT_TRUE(set.cells[cell]);
-                const auto u = static_cast<int>(cell) % width, v = static_cast<int>(cell) / width;
-                ASSERT_EQ((u - x) * (u - x) + (v - y) * (v - y), least) << seed << ": " << x << ", " << y;
+        const auto apart = [&](std::size_t a, std::size_t b) {
+            const auto part = [](std::size_t cell, int each, int count) {
+                return static_cast<int>(cell) / each % count;
+            };
+            std::int64_t sum = 0;
+            for (const auto& [each, count] :
+                 {std::pair(1, width), std::pair(width, height), std::pair(width * height, depth)}) {
+                const std::int64_t away = part(a, each, count) - part(b, each, count);
+                sum += away * away;
             }
+            return sum;
+        };
+        for (std::size_t cell = 0; cell < set.cells.size(); ++cell) {
+            std::int64_t least = INT64_MAX;
+            for (std::size_t other = 0; other < set.cells.size(); ++other)
+                if (set.cells[other]) least = std::min(least, apart(cell, other));
+            ASSERT_EQ(squared[cell], least) << seed << ": " << cell;
+            ASSERT_TRUE(set.cells[nearest[cell]]);
+            ASSERT_EQ(apart(cell, nearest[cell]), least) << seed << ": " << cell;
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "compiler/import/importers.h"
+#include "compiler/primitives/mesh_file.h"
 #include "compiler/support/number.h"
 #include "runtime/inverse/lsystem/drawing_file.h"
 #include "runtime/points/card.h"
@@ -196,8 +197,11 @@ void add_collage_options(CLI::App& app, Options& options) {
 
 void add_fit_options(CLI::App& app, Options& options) {
     FitSettings& fit = options.fit;
-    add_target(app, options,
-               std::string(target_help) + "; or a drawing (.svg, .csv, .txt, .lsys), for an L-system");
+    add_target(
+        app, options,
+        std::string(target_help) +
+            "; or a cloud of points or a mesh (.ply, .obj, .stl), for maps of space; or a drawing (.svg, "
+            ".csv, .txt, .lsys), for an L-system");
     app.add_option(
            "-o,--output", options.render.output,
            "Model to write: .rifs, .lsys for a drawing, or .pifs with --blocks (default: TARGET's name, in "
@@ -218,8 +222,8 @@ void add_fit_options(CLI::App& app, Options& options) {
                  "Give each map a tint, so that the model has the target's colours");
     app.add_option(
            "--start", fit.start,
-           "Model to begin with: a flat iterated function system in the frame in which graftal writes "
-           "them")
+           "Model to begin with: an iterated function system in the frame in which graftal writes them, flat "
+           "for a picture")
         ->type_name("MODEL");
     CLI::Option* const blocks = app.add_flag(
         "--blocks", fit.blocks,
@@ -241,12 +245,13 @@ void add_fit_options(CLI::App& app, Options& options) {
     add_common(app, options);
     app.footer(
         "Ctrl-C ends the search, and keeps the best system so far. In the model, the picture is 1 wide, and\n"
-        "its lower left corner is <0, 0>.\n"
+        "its lower left corner is <0, 0>. A model of a cloud or a mesh has the target's own coordinates.\n"
         "Examples:\n"
         "  graftal fit leaf.png                                   # makes leaf.rifs\n"
         "  graftal fit leaf.png --maps 4 --work 120 --seed 7 -o other.rifs\n"
         "  graftal fit digit.png --maps 10 --objective occupancy  # the same cells, by more maps\n"
         "  graftal fit leaf.png --start leaf.rifs                 # goes on from there\n"
+        "  graftal fit cloud.ply --similar                        # maps of space: makes cloud.rifs\n"
         "  graftal fit curve.svg                                  # an L-system: makes curve.lsys\n"
         "  graftal points leaf.rifs --size 400x400 -o again.png   # the target's size gives its frame\n"
         "  graftal fit --blocks photo.png --tolerance 5           # makes photo.pifs\n"
@@ -257,6 +262,7 @@ std::string complete_fit(Options& options) {
     std::string& output = options.render.output;
     const FitSettings& fit = options.fit;
     const bool draws = is_drawing_name(options.points.target) && !fit.blocks;
+    const bool solid = is_mesh_name(options.points.target) && !fit.blocks;
     const std::string ending = fit.blocks ? ".pifs" : draws ? ".lsys" : ".rifs";
     if (output.empty()) output = model_stem(options.points.target) + ending;
     if (output != "-" && !output.ends_with(ending))
@@ -272,8 +278,11 @@ std::string complete_fit(Options& options) {
                                shortest(least), shortest(most));
     }
     const TargetCriterion usual, &criterion = options.points.criterion;
-    if (draws && (criterion.light != usual.light || criterion.threshold != usual.threshold))
-        return "--threshold and --light are for pictures, and not for drawings";
+    const std::string_view others = solid ? "clouds and meshes" : "drawings";
+    if ((draws || solid) && (criterion.light != usual.light || criterion.threshold != usual.threshold))
+        return fmt::format("--threshold and --light are for pictures, and not for {}", others);
+    if (solid && (fit.occupancy || fit.in_colour))
+        return fmt::format("--objective and --color are for pictures, and not for {}", others);
     if (draws && (fit.similar || fit.occupancy || fit.in_colour || !fit.start.empty() ||
                   fit.most_maps != FitSettings().most_maps))
         return "--maps, --similar, --objective, --color and --start are for pictures, and not for drawings";

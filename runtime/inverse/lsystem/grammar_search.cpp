@@ -67,12 +67,13 @@ class GrammarSearch {
                       [&](const Trial& trial) { return starts_left(trial) == 0 || too_large(trial.growth); });
         for (std::size_t i = 0; i < trials.size(); ++i)
             sum += weight(i);
+        // The first order opens brackets last, so that simple systems come out without needless ones.
+        const unsigned order = round < rich_round ? 0 : static_cast<unsigned>(round);
         const double modules = static_cast<double>(first_modules[kind] << 2 * round) / sum;
         for (std::size_t i = 0; i < trials.size(); ++i) {
             const auto most_modules = static_cast<std::uint64_t>(modules * weight(i));
             if (most_modules < least_modules) break;
-            if (!too_large(trials[i].growth))
-                try_growth(trials[i], most_modules, static_cast<unsigned>(round));
+            if (!too_large(trials[i].growth)) try_growth(trials[i], most_modules, order);
         }
     }
 

@@ -1,98 +1,122 @@
 #include "runtime/inverse/lsystem/grammar_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace graftal {
 
 namespace {
 
-constexpr int most_rounds = 9;
-constexpr int rich_round = 2; ///< the first with rich systems
-constexpr std::uint64_t first_modules = 250'000, rich_modules = 1'200, least_modules = 300;
-constexpr std::size_t least_rich_size = 8;
-
-/// Modules for a growth in a round, at all starts together: more for the smallest of the plain systems.
-std::uint64_t modules_for(std::size_t place, bool rich, int round) {
-    const std::uint64_t modules = rich ? rich_modules : first_modules / (place + 20);
-    return std::max(least_modules, modules << (3 * (rich ? round - rich_round : round)));
-}
+constexpr int most_rounds = 14;
+constexpr int rich_round = 3; ///< the first with three letters that have rules of their own
+/// Modules of each kind in the first round: more where there are fewer growths. Each round has four times as
+/// many as the round before.
+constexpr std::array<std::uint64_t, growth_kinds> first_modules = {200'000, 150'000, 75'000,
+                                                                   75'000,  100'000, 50'000};
+constexpr std::uint64_t least_modules = 300;
 
 class GrammarSearch {
   public:
     GrammarSearch(const StrokeGraph& graph, WorkMeter& meter)
-        : graph_(graph), meter_(meter), unfolding_(graph, meter) {}
+        : graph_(graph), meter_(meter), unfolding_(graph, meter) {
+        for (const std::uint32_t place : graph.starts)
+            for (const StrokeWay& way : graph.ways(place))
+                if (starts_.empty() || starts_.back() != Start{place, way.direction})
+                    starts_.push_back({place, way.direction});
+    }
 
     std::optional<FoundGrammar> run(const std::function<void(double, int)>& on_progress) {
-        add(false);
-        for (int round = 0; round < most_rounds && !best_; ++round) {
-            try_round(0, round, on_progress);
-            // After a find, too, to see that no smaller one is among them.
-            const bool may_be_smaller = best_ && round < rich_round && best_->growth.size() > least_rich_size;
-            if (round != rich_round && !may_be_smaller) continue;
-            plain_ = growths_.size();
-            add(true);
-            try_round(plain_, rich_round, on_progress);
-        }
+        for (int round = 0; round < most_rounds && !best_; ++round)
+            for (std::size_t kind = 0; kind < growth_kinds; ++kind) {
+                if (on_progress) on_progress(static_cast<double>(kind) / growth_kinds, round);
+                if (round >= rich_round || !is_rich(static_cast<GrowthKind>(kind))) try_kind(kind, round);
+            }
         return std::move(best_);
     }
 
   private:
-    /// The state of a growth so far.
-    struct Trial {
-        std::uint64_t modules = 0; ///< that it has had in a round
-        std::uint32_t start = 0;   ///< the next to be tried
-        bool gave_up = false;      ///< at a start, for want of modules
-        bool done = false;         ///< it has no system
+    struct Start {
+        std::uint32_t place = 0;
+        std::int32_t direction = 0; ///< of the first stroke
+        bool operator==(const Start&) const = default;
     };
 
-    void try_round(std::size_t from, int round, const std::function<void(double, int)>& on_progress) {
-        for (std::size_t i = from; i < growths_.size(); ++i) {
-            if (on_progress)
-                on_progress(static_cast<double>(i) / static_cast<double>(growths_.size()), round);
-            const std::uint64_t modules = modules_for(i, i >= plain_, round);
-            if (trials_[i].modules < modules && !trials_[i].done && !too_large(growths_[i]))
-                try_growth(i, modules);
+    /// A growth, and the state of its search.
+    struct Trial {
+        LsysGrowth growth;
+        std::size_t untried = 0;          ///< the first start that was not tried
+        std::vector<std::size_t> waiting; ///< starts that were tried and need more modules
+    };
+
+    static bool is_rich(GrowthKind kind) {
+        return kind == GrowthKind::three_edges || kind == GrowthKind::three_nodes;
+    }
+
+    /// The smallest growths of a kind have the most modules.
+    void try_kind(std::size_t kind, int round) {
+        std::vector<Trial>& trials = trials_[kind];
+        if (!std::exchange(listed_[kind], true))
+            for (const LsysGrowth& growth :
+                 growths(graph_.strokes, static_cast<GrowthKind>(kind), graph_.sized(), meter_))
+                trials.push_back({growth, 0, {}});
+        double sum = 0;
+        std::erase_if(trials,
+                      [&](const Trial& trial) { return starts_left(trial) == 0 || too_large(trial.growth); });
+        for (std::size_t i = 0; i < trials.size(); ++i)
+            sum += weight(i);
+        // The first order opens brackets last, so that simple systems come out without needless ones.
+        const unsigned order = round < rich_round ? 0 : static_cast<unsigned>(round);
+        const double modules = static_cast<double>(first_modules[kind] << 2 * round) / sum;
+        for (std::size_t i = 0; i < trials.size(); ++i) {
+            const auto most_modules = static_cast<std::uint64_t>(modules * weight(i));
+            if (most_modules < least_modules) break;
+            if (!too_large(trials[i].growth)) try_growth(trials[i], most_modules, order);
         }
     }
+
+    static double weight(std::size_t place) { return 1 / static_cast<double>(place + 10); }
 
     /// A system with nearly as many letters as it draws says nothing.
     bool too_large(const LsysGrowth& growth) const {
         return 3 * growth.size() > graph_.strokes || (best_ && growth.size() >= best_->growth.size());
     }
 
-    void add(bool rich) {
-        const std::vector<LsysGrowth> more = growths(graph_.strokes, rich, graph_.sized(), meter_);
-        growths_.insert(growths_.end(), more.begin(), more.end());
-        trials_.resize(growths_.size());
+    std::size_t starts_left(const Trial& trial) const {
+        return starts_.size() - trial.untried + trial.waiting.size();
     }
 
-    /// Tries a growth at as many starts as the modules suffice for; the next round goes on from there.
-    void try_growth(std::size_t number, std::uint64_t most_modules) {
-        const auto starts = static_cast<std::uint32_t>(graph_.starts.size());
-        const std::uint64_t part = std::max(least_modules, most_modules / std::min(starts, 16u));
-        Trial& trial = trials_[number];
-        trial.modules = most_modules;
-        for (std::uint64_t spent = 0; spent < most_modules && !trial.done; spent += unfolding_.modules()) {
-            std::optional<FoundGrammar> found =
-                unfolding_.find(growths_[number], graph_.starts[trial.start], part);
-            trial.gave_up = trial.gave_up || unfolding_.gave_up();
-            if (found) best_ = std::move(found), trial.done = true;
-            if (trial.done) return;
-            if (++trial.start < starts) continue;
-            trial.done = !trial.gave_up;
-            trial.start = 0;
-            trial.gave_up = false;
-            break;
+    /// Tries a growth at all its starts, or at the first of them if the modules do not suffice. Then the
+    /// others come first in the next round.
+    void try_growth(Trial& trial, std::uint64_t most_modules, unsigned order) {
+        const std::uint64_t part = std::max(least_modules, most_modules / starts_left(trial));
+        std::uint64_t spent = 0;
+        std::size_t again = 0;
+        const std::size_t waiting = trial.waiting.size();
+        while (spent < most_modules && (trial.untried < starts_.size() || again < waiting)) {
+            const std::size_t number =
+                trial.untried < starts_.size() ? trial.untried++ : trial.waiting[again++];
+            const auto [place, direction] = starts_[number];
+            std::optional<FoundGrammar> found = unfolding_.find(trial.growth, place, direction, part, order);
+            spent += unfolding_.modules();
+            if (found) {
+                best_ = std::move(found);
+                return;
+            }
+            if (unfolding_.gave_up()) trial.waiting.push_back(number);
         }
+        trial.waiting.erase(trial.waiting.begin(),
+                            trial.waiting.begin() + static_cast<std::ptrdiff_t>(again));
     }
 
     const StrokeGraph& graph_;
     WorkMeter& meter_;
     Unfolding unfolding_;
-    std::vector<LsysGrowth> growths_; ///< plain ones, then rich ones
-    std::size_t plain_ = SIZE_MAX;
-    std::vector<Trial> trials_;
+    std::vector<Start> starts_;
+    std::array<std::vector<Trial>, growth_kinds> trials_;
+    std::array<bool, growth_kinds> listed_{};
     std::optional<FoundGrammar> best_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 namespace graftal {
 
@@ -82,7 +83,7 @@ class GrowthTable {
             if (count > segments_ || !grows) return;
             if (step < 2 || count == 0 || segments_ % count != 0 || segments_ / count > most_axiom_letters)
                 continue;
-            if (!checked && (!reaches_all(growth) || is_repeated(growth))) return;
+            if (!checked && (!reaches_all(growth) || (growth.drawn == 1 && is_repeated(growth)))) return;
             checked = true;
             growth.steps = step;
             growth.axiom = static_cast<std::uint8_t>(segments_ / count);
@@ -103,6 +104,26 @@ class GrowthTable {
         }
     }
 
+    /// Keeps of each growth only how many letters its rules have, once each.
+    void forget_letters() {
+        for (LsysGrowth& growth : found_) {
+            growth.by_letter = false;
+            for (std::size_t rule = growth.straight ? 1 : 0; rule < growth.letters; ++rule) {
+                const std::size_t drawn = growth.drawn_in(rule), hidden = growth.hidden_in(rule);
+                growth.rules[rule] = {};
+                growth.rules[rule][0] = static_cast<std::uint8_t>(drawn);
+                if (growth.drawn < growth.letters)
+                    growth.rules[rule][growth.drawn] = static_cast<std::uint8_t>(hidden);
+            }
+        }
+        const auto key = [](const LsysGrowth& g) {
+            return std::tuple(g.letters, g.drawn, g.straight, g.steps, g.axiom, g.rules);
+        };
+        std::ranges::sort(found_, {}, key);
+        const auto [first, last] = std::ranges::unique(found_, {}, key);
+        found_.erase(first, last);
+    }
+
     std::vector<LsysGrowth> sorted() {
         std::ranges::stable_sort(found_, [](const LsysGrowth& a, const LsysGrowth& b) {
             return a.size() != b.size() ? a.size() < b.size() : a.steps > b.steps;
@@ -116,41 +137,20 @@ class GrowthTable {
     std::vector<LsysGrowth> found_;
 };
 
-/// Letters that all draw, with rules of their own.
-void add_edge_systems(GrowthTable& table) {
-    for (std::uint8_t letters = 1; letters <= 2; ++letters)
-        for (std::uint8_t length = 2; length <= 40; ++length) {
-            LsysGrowth growth{.letters = letters, .drawn = letters, .by_letter = letters == 1};
-            for (std::size_t rule = 0; rule < letters; ++rule)
-                growth.rules[rule][0] = length;
-            table.try_steps(growth);
-        }
-    const std::vector<Counts> two = rows(2, {8, 8}, 8);
-    table.try_rows({.letters = 2, .drawn = 2}, {two, two}, 17);
-}
-
-/// A letter that draws, and grows straight; others mark where rules go on.
-void add_node_systems(GrowthTable& table, std::uint8_t straight) {
-    LsysGrowth growth{.drawn = 1, .straight = straight, .axiom_letter = 1};
-    growth.rules[0][0] = straight;
-    for (std::uint8_t hidden = 1; hidden <= 3; ++hidden)
-        for (std::uint8_t segments = 1; segments <= 40; ++segments)
-            for (std::uint8_t nodes = 1; nodes <= 30; ++nodes) {
-                growth.letters = 1 + hidden;
-                growth.by_letter = hidden == 1;
-                for (std::size_t rule = 1; rule <= hidden; ++rule)
-                    growth.rules[rule] = {segments, nodes};
-                table.try_steps(growth);
-            }
-    growth.by_letter = true;
-    growth.letters = 3;
-    const std::vector<Counts> two = rows(3, {7, 5, 5}, 10);
-    table.try_rows(growth, {{growth.rules[0] = {straight}}, two, two}, 20);
-}
-
-void add_three_edges(GrowthTable& table) {
-    const std::vector<Counts> three = rows(3, {4, 4, 4}, 6);
-    table.try_rows({.letters = 3, .drawn = 3}, {three, three, three}, 18);
+/// Letters that all draw, of which only the lengths of their rules are known: all lengths within a bound, or
+/// one for all.
+void add_edge_systems(GrowthTable& table, std::uint8_t letters, std::uint8_t longest) {
+    LsysGrowth growth{.letters = letters, .drawn = letters};
+    std::vector<Counts> list = rows(letters, {longest, longest, longest}, longest);
+    std::erase(list, Counts{});
+    if (letters > 1) table.try_rows(growth, std::vector(letters, list), SIZE_MAX);
+    table.forget_letters();
+    growth.by_letter = letters == 1;
+    for (std::uint8_t length = letters == 1 ? 2 : longest + 1; length <= 40; ++length) {
+        for (std::size_t rule = 0; rule < letters; ++rule)
+            growth.rules[rule] = {length};
+        table.try_steps(growth);
+    }
 }
 
 void add_three_nodes(GrowthTable& table, std::uint8_t straight) {
@@ -158,6 +158,26 @@ void add_three_nodes(GrowthTable& table, std::uint8_t straight) {
     growth.rules[0][0] = straight;
     const std::vector<Counts> three = rows(4, {3, 3, 3, 3}, 6);
     table.try_rows(growth, {{growth.rules[0]}, three, three, three}, 19);
+}
+
+/// A letter that draws, and grows straight; others mark where rules go on.
+void add_node_systems(GrowthTable& table, std::uint8_t hidden, std::uint8_t straight) {
+    LsysGrowth growth{.letters = std::size_t{1} + hidden,
+                      .drawn = 1,
+                      .straight = straight,
+                      .by_letter = hidden == 1,
+                      .axiom_letter = 1};
+    growth.rules[0][0] = straight;
+    for (std::uint8_t segments = 1; segments <= 40; ++segments)
+        for (std::uint8_t nodes = 1; nodes <= 30; ++nodes) {
+            for (std::size_t rule = 1; rule <= hidden; ++rule)
+                growth.rules[rule] = {segments, nodes};
+            table.try_steps(growth);
+        }
+    growth.by_letter = true;
+    const std::vector<Counts> two = rows(3, {7, 5, 5}, 10);
+    if (hidden == 2) table.try_rows(growth, {{growth.rules[0]}, two, two}, 20);
+    if (hidden == 3) add_three_nodes(table, straight);
 }
 
 /// A letter that draws and has a rule of its own, beside one that does not.
@@ -187,17 +207,41 @@ std::size_t LsysGrowth::size() const {
     return sum;
 }
 
-std::vector<LsysGrowth> growths(std::uint64_t segments, bool rich, bool sized, WorkMeter& meter) {
+SegmentRange segment_range(const LsysGrowth& growth, const PartialRules& rules, std::uint64_t limit) {
+    std::array<SegmentRange, LsysGrowth::most_letters> range{};
+    std::fill_n(range.begin(), growth.drawn, SegmentRange{1, 1});
+    for (unsigned step = 0; step < growth.steps; ++step) {
+        const std::array<SegmentRange, LsysGrowth::most_letters> before = range;
+        SegmentRange drawn{limit, 0}, hidden{limit, 0};
+        for (std::size_t letter = 0; letter < growth.letters; ++letter) {
+            SegmentRange& group = letter < growth.drawn ? drawn : hidden;
+            group = {std::min(group.least, before[letter].least), std::max(group.most, before[letter].most)};
+        }
+        for (std::size_t rule = 0; rule < growth.letters; ++rule) {
+            const PartialRule& known = rules[rule];
+            std::uint64_t least = known.drawn * drawn.least + known.hidden * hidden.least,
+                          most = known.drawn * drawn.most + known.hidden * hidden.most;
+            for (std::size_t letter = 0; letter < growth.letters; ++letter) {
+                least += known.counts[letter] * before[letter].least;
+                most += known.counts[letter] * before[letter].most;
+            }
+            range[rule] = {std::min(least, limit), std::min(most, limit)};
+        }
+    }
+    return range[growth.axiom_letter];
+}
+
+std::vector<LsysGrowth> growths(std::uint64_t segments, GrowthKind kind, bool sized, WorkMeter& meter) {
     GrowthTable table(segments, meter);
-    if (rich && !sized) add_three_edges(table);
-    if (!rich && !sized) add_edge_systems(table);
-    if (!rich && !sized) add_mixed_systems(table);
-    const std::uint8_t most_straight = sized ? 1 : 3;
-    for (std::uint8_t straight = 1; straight <= most_straight; ++straight)
-        if (rich)
-            add_three_nodes(table, straight);
-        else
-            add_node_systems(table, straight);
+    if (kind <= GrowthKind::three_edges) {
+        constexpr std::uint8_t longest[] = {1, 10, 7};
+        const auto number = static_cast<std::uint8_t>(kind);
+        if (!sized) add_edge_systems(table, number + 1, longest[number]);
+        return table.sorted();
+    }
+    if (kind == GrowthKind::one_node && !sized) add_mixed_systems(table);
+    for (std::uint8_t straight = 1; straight <= (sized ? 1 : 3); ++straight)
+        add_node_systems(table, static_cast<std::uint8_t>(kind) - 2, straight);
     return table.sorted();
 }
 

@@ -32,9 +32,28 @@ struct LsysGrowth {
     std::size_t size() const;
 };
 
+/// The letters of a rule as far as they are known.
+struct PartialRule {
+    LsysGrowth::Counts counts{};
+    std::uint8_t drawn = 0, hidden = 0; ///< others that draw, and that do not, in some of the letters
+};
+
+using PartialRules = std::array<PartialRule, LsysGrowth::most_letters>;
+
+/// The least and the most segments that a letter of the axiom draws. Counts end at `limit`.
+struct SegmentRange {
+    std::uint64_t least = 0, most = 0;
+};
+SegmentRange segment_range(const LsysGrowth& growth, const PartialRules& rules, std::uint64_t limit);
+
+/// Kinds of systems: letters that all draw, with one to three rules; or a letter that draws and grows
+/// straight, with one to three others that do not. Those with one include letters that draw and have a rule
+/// of their own.
+enum class GrowthKind : std::uint8_t { one_edge, two_edges, three_edges, one_node, two_nodes, three_nodes };
+inline constexpr std::size_t growth_kinds = 6;
+
 /// Numbers of letters, within bounds, that draw so many segments after two or more steps; smaller ones come
-/// first, then those of more steps. `rich`: of three letters with rules of their own; else of one or two, or
-/// of several whose rules have one length. `sized`: segments of each step have a length of their own.
-std::vector<LsysGrowth> growths(std::uint64_t segments, bool rich, bool sized, WorkMeter& meter);
+/// first, then those of more steps. `sized`: segments of each step have a length of their own.
+std::vector<LsysGrowth> growths(std::uint64_t segments, GrowthKind kind, bool sized, WorkMeter& meter);
 
 } // namespace graftal

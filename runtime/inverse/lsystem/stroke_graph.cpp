@@ -115,11 +115,12 @@ class StrokeGraphBuilder {
         }
     }
 
+    /// The oldest place within reach: the answer for a point stays the same when more places come.
     std::optional<std::uint32_t> place_at(const StrokeGraph& graph, Vec2 point) const {
         std::optional<std::uint32_t> found;
         cells_.near(point, [&](std::uint32_t place) {
             const Vec2 away = graph.places[place] - point;
-            if (!found && std::hypot(away.x, away.y) <= reach_) found = place;
+            if ((!found || place < *found) && std::hypot(away.x, away.y) <= reach_) found = place;
         });
         return found;
     }

@@ -7,10 +7,10 @@ namespace graftal {
 
 namespace {
 
-constexpr unsigned most_depth = 3000;         ///< guesses within guesses
-constexpr std::uint8_t most_brackets = 4;     ///< of a rule
-constexpr std::uint8_t most_open = 2;         ///< brackets within brackets
-constexpr std::int32_t most_endless_turn = 6; ///< in angles, where directions never come back
+constexpr unsigned most_depth = 3000;     ///< guesses within guesses
+constexpr std::uint64_t fit_modules = 4;  ///< that a count of strokes is worth
+constexpr std::uint8_t most_brackets = 4; ///< of a rule
+constexpr std::uint8_t most_open = 2;     ///< brackets within brackets
 
 } // namespace
 
@@ -25,8 +25,11 @@ Unfolding::Unfolding(const StrokeGraph& graph, WorkMeter& meter)
 }
 
 std::optional<FoundGrammar> Unfolding::find(const LsysGrowth& growth, std::uint32_t start,
-                                            std::uint64_t most_modules) {
+                                            std::int32_t direction, std::uint64_t most_modules,
+                                            unsigned order) {
     growth_ = growth;
+    order_ = order;
+    direction_ = direction;
     modules_ = 0;
     most_modules_ = most_modules;
     gave_up_ = false;
@@ -164,8 +167,42 @@ void Unfolding::turn_after_gap(State& state, const Frame& frame, const Rule& rul
 }
 
 bool Unfolding::may_count(std::size_t rule, std::size_t letter) const {
-    if (rule == growth_.letters) return !growth_.by_letter || letter == growth_.axiom_letter;
-    return !growth_.by_letter || rules_[rule].counts[letter] < growth_.rules[rule][letter];
+    if (rule == growth_.letters) return letter == growth_.axiom_letter;
+    if (!growth_.by_letter) return is_next(letter);
+    return rules_[rule].counts[letter] < growth_.rules[rule][letter];
+}
+
+/// Whether the letter was used, or is the first that was not. Others would give the same systems.
+bool Unfolding::is_next(std::size_t letter) const {
+    if (letter <= growth_.axiom_letter + 1) return true;
+    return std::ranges::any_of(rules_, [&](const Rule& rule) { return rule.counts[letter - 1] > 0; });
+}
+
+/// Whether the letters that are known leave room for as many strokes as there are.
+bool Unfolding::may_fit() {
+    if (growth_.by_letter) return true;
+    meter_.add(fit_modules);
+    modules_ += fit_modules;
+    PartialRules known;
+    for (std::size_t rule = 0; rule < growth_.letters; ++rule) {
+        known[rule].counts = rules_[rule].counts;
+        std::size_t drawn = growth_.drawn_in(rule), hidden = growth_.hidden_in(rule);
+        for (std::size_t letter = 0; letter < growth_.letters; ++letter)
+            (is_hidden(letter) ? hidden : drawn) -= known[rule].counts[letter];
+        known[rule].drawn = static_cast<std::uint8_t>(drawn);
+        known[rule].hidden = static_cast<std::uint8_t>(hidden);
+    }
+    const std::uint64_t strokes = graph_.strokes / growth_.axiom;
+    const SegmentRange range = segment_range(growth_, known, strokes + 1);
+    return range.least <= strokes && strokes <= range.most;
+}
+
+/// Whether this order tries guesses at a place of a rule in reverse.
+bool Unfolding::is_reversed(const Frame& frame) const {
+    const auto place = static_cast<std::uint64_t>(frame.rule) * 64 + frame.token * 8u + frame.item + 1;
+    return order_ > 0 &&
+           ((order_ * 0x9E3779B97F4A7C15ull ^ place * 0xC2B2AE3D27D4EB4Full) * 0x94D049BB133111EBull >> 63) !=
+               0;
 }
 
 /// Whether the first turn of a rule may be chosen: another choice gives the same drawings.
@@ -188,7 +225,7 @@ bool Unfolding::try_item(const State& state, const Item& item) {
         ++rule.hidden;
         ++rule.counts[static_cast<std::size_t>(item.letter)];
     }
-    if (unfold(state)) return true;
+    if ((item.mark != Mark::letter || may_fit()) && unfold(state)) return true;
     Rule& again = rules_[frame.rule];
     Gap& gap_again = again.gaps[frame.token];
     if (item.mark == Mark::letter) {
@@ -210,6 +247,10 @@ bool Unfolding::guess_item(const State& state) {
     const bool at_end = rule.complete && frame.token == rule.tokens.size();
     const bool is_open = gap.open > 0;
     const bool after_open = is_open && gap.items.back().mark == Mark::open;
+    const bool may_open =
+        !is_open && left > 0 && graph_.branches && !is_axiom(frame.rule) && rule.brackets < most_brackets;
+    const bool opens_first = is_reversed(frame);
+    if (may_open && opens_first && try_item(state, {Mark::open})) return true;
     if (left > 0) {
         const bool is_first = is_axiom(frame.rule) && rule.hidden == 0;
         const Number turn = is_first ? no_turn : new_turn();
@@ -225,8 +266,7 @@ bool Unfolding::guess_item(const State& state) {
         if (unfold(state)) return true;
         rules_[number].gaps[frame.token].closed = false;
     }
-    return left > 0 && graph_.branches && !is_axiom(frame.rule) && rule.brackets < most_brackets &&
-           try_item(state, {Mark::open});
+    return may_open && !opens_first && try_item(state, {Mark::open});
 }
 
 bool Unfolding::try_token(const State& state, const Token& token) {
@@ -263,6 +303,10 @@ bool Unfolding::guess_token(const State& state) {
     const bool can_draw =
         !draws_now || std::ranges::any_of(graph_.ways(state.place),
                                           [&](const StrokeWay& way) { return left_[way.bundle] > 0; });
+    const bool may_open = left > 0 && can_draw && graph_.branches && !is_axiom(frame.rule) && !after_open &&
+                          rule.open < most_open && rule.brackets < most_brackets;
+    const bool opens_first = is_reversed(frame);
+    if (may_open && opens_first && try_token(state, {Mark::open})) return true;
     if (left > 0 && can_draw) {
         const bool is_fixed = rule.drawn == 0 && fixes_turn(number);
         const Number turn = is_fixed ? no_turn : new_turn();
@@ -281,8 +325,7 @@ bool Unfolding::guess_token(const State& state) {
         if (!is_axiom(frame.rule)) turns_.pop_back();
         rules_[number].complete = false;
     }
-    return left > 0 && can_draw && graph_.branches && !is_axiom(frame.rule) && !after_open &&
-           rule.open < most_open && rule.brackets < most_brackets && try_token(state, {Mark::open});
+    return may_open && !opens_first && try_token(state, {Mark::open});
 }
 
 bool Unfolding::guess_letter(const State& state) {
@@ -292,7 +335,7 @@ bool Unfolding::guess_letter(const State& state) {
         if (!may_count(number, letter)) continue;
         rules_[number].tokens[frame.token].letter = static_cast<std::int16_t>(letter);
         ++rules_[number].counts[letter];
-        if (unfold(state)) return true;
+        if (may_fit() && unfold(state)) return true;
         --rules_[number].counts[letter];
     }
     rules_[number].tokens[frame.token].letter = any_letter;
@@ -384,6 +427,7 @@ bool Unfolding::guess_turn(const State& state) {
     std::vector<std::int32_t> open;
     for (const StrokeWay& way : graph_.ways(state.place))
         if (left_[way.bundle] > 0 && graph_.classes[way.bundle] == state.length &&
+            (!taken_.empty() || way.direction == direction_) &&
             (open.empty() || open.back() != way.direction))
             open.push_back(way.direction);
     std::uint8_t chosen = 0;
@@ -398,6 +442,7 @@ bool Unfolding::guess_turn(const State& state) {
     for (std::int32_t& direction : open)
         direction = reduced(factor * (direction - heading.known));
     std::ranges::sort(open, {}, [](std::int32_t x) { return std::pair(std::abs(x), -x); });
+    if (is_reversed(state.frames.back())) std::ranges::reverse(open);
     return std::ranges::any_of(open, [&, number = turn](std::int32_t guess) {
         rest.known = guess;
         return try_turn(state, number, rest);
@@ -412,103 +457,6 @@ bool Unfolding::guess_multiple(const State& state, const std::vector<std::int32_
         if (state.heading.count == 1 && std::ranges::find(open, direction) == open.end()) return false;
         return try_turn(state, number, {guess});
     });
-}
-
-/// Turns from the smallest on.
-std::vector<std::int32_t> Unfolding::turns_in_order() const {
-    std::vector<std::int32_t> turns = {0};
-    const std::int32_t most = graph_.directions > 0 ? graph_.directions / 2 : most_endless_turn;
-    for (std::int32_t turn = 1; turn <= most; ++turn) {
-        turns.push_back(turn);
-        if (2 * turn != graph_.directions) turns.push_back(-turn);
-    }
-    return turns;
-}
-
-/// A direction, or a turn, between minus half a circle and half a circle.
-std::int32_t Unfolding::reduced(std::int32_t direction) const {
-    const std::int32_t circle = graph_.directions;
-    if (circle == 0) return direction;
-    direction %= circle;
-    if (2 * direction > circle) direction -= circle;
-    if (2 * direction <= -circle) direction += circle;
-    return direction;
-}
-
-Unfolding::Number Unfolding::new_turn() {
-    turns_.emplace_back();
-    return static_cast<Number>(turns_.size() - 1);
-}
-
-void Unfolding::turn_by(Heading& heading, Number turn, std::int32_t factor) const {
-    if (turns_[turn].known) {
-        const Heading& value = turns_[turn].value;
-        heading.known = reduced(heading.known + factor * value.known);
-        heading.lost = heading.lost || value.lost;
-        for (std::uint8_t i = 0; i < value.count; ++i)
-            turn_by(heading, value.terms[i].turn, factor * value.terms[i].factor);
-        return;
-    }
-    for (std::uint8_t i = 0; i < heading.count; ++i) {
-        Heading::Term& term = heading.terms[i];
-        if (term.turn != turn) continue;
-        term.factor = reduced(term.factor + factor);
-        if (term.factor == 0) term = heading.terms[--heading.count];
-        return;
-    }
-    if (heading.count == heading.terms.size())
-        heading.lost = true;
-    else
-        heading.terms[heading.count++] = {turn, reduced(factor)};
-}
-
-/// Puts values in place of turns that have become known.
-void Unfolding::settle(Heading& heading) const {
-    const bool settled = std::none_of(heading.terms.begin(), heading.terms.begin() + heading.count,
-                                      [&](const Heading::Term& term) { return turns_[term.turn].known; });
-    if (settled) return;
-    const Heading before = heading;
-    heading.count = 0;
-    for (std::uint8_t i = 0; i < before.count; ++i)
-        turn_by(heading, before.terms[i].turn, before.terms[i].factor);
-}
-
-/// The value of a turn, where those that are unknown to the end are none.
-std::int32_t Unfolding::value(Number turn) const {
-    Heading heading;
-    turn_by(heading, turn, 1);
-    return heading.known;
-}
-
-void Unfolding::add_turn(RuleWord& word, std::int32_t turn) const {
-    if (reduced(turn) != 0) word.push_back({RuleSymbol::Kind::turn, reduced(turn)});
-}
-
-RuleWord Unfolding::word_of(const Rule& rule) const {
-    using Kind = RuleSymbol::Kind;
-    constexpr Kind brackets[] = {Kind::letter, Kind::open, Kind::close};
-    RuleWord word;
-    for (std::size_t i = 0; i <= rule.tokens.size(); ++i) {
-        std::int32_t passed = 0;
-        int depth = 0;
-        for (const Item& item : rule.gaps[i].items) {
-            depth += item.mark == Mark::open ? 1 : item.mark == Mark::close ? -1 : 0;
-            if (item.mark == Mark::letter) {
-                add_turn(word, value(item.turn));
-                passed += depth == 0 ? value(item.turn) : 0;
-            }
-            word.push_back({brackets[static_cast<std::size_t>(item.mark)], item.letter});
-        }
-        const bool at_end = i == rule.tokens.size();
-        const bool closes = !at_end && rule.tokens[i].mark == Mark::close;
-        if (!closes) add_turn(word, value(at_end ? rule.end_turn : rule.tokens[i].turn) - passed);
-        if (at_end) break;
-        const Token& token = rule.tokens[i];
-        const std::int32_t letter = token.letter == any_letter ? 0 : token.letter;
-        word.push_back(
-            {brackets[static_cast<std::size_t>(token.mark)], token.mark == Mark::letter ? letter : 0});
-    }
-    return word;
 }
 
 } // namespace graftal

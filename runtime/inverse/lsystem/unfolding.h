@@ -40,9 +40,11 @@ class Unfolding {
     /// Both must outlive this. The meter counts modules.
     Unfolding(const StrokeGraph& graph, WorkMeter& meter);
 
-    /// The first system with this growth that begins at this place, if one is found in so many modules.
-    std::optional<FoundGrammar> find(const LsysGrowth& growth, std::uint32_t start,
-                                     std::uint64_t most_modules);
+    /// The first system with this growth that begins at this place in this direction, if one is found in so
+    /// many modules. Each `order` from 1 on tries guesses in an order of its own: one may be lucky where
+    /// another is not (Gomes, Selman and Kautz 1998, "Boosting combinatorial search through randomization").
+    std::optional<FoundGrammar> find(const LsysGrowth& growth, std::uint32_t start, std::int32_t direction,
+                                     std::uint64_t most_modules, unsigned order = 0);
     /// Whether the last search ended by its limit.
     bool gave_up() const { return gave_up_; }
     /// Modules that the last search took.
@@ -112,6 +114,7 @@ class Unfolding {
     };
 
     bool unfold(State state);
+    bool is_reversed(const Frame& frame) const;
     bool follow(State& state);
     bool guess_item(const State& state);
     bool guess_token(const State& state);
@@ -141,6 +144,8 @@ class Unfolding {
     bool is_axiom(std::int16_t rule) const { return static_cast<std::size_t>(rule) == growth_.letters; }
     bool has_hidden() const { return growth_.letters > growth_.drawn; }
     bool may_count(std::size_t rule, std::size_t letter) const;
+    bool is_next(std::size_t letter) const;
+    bool may_fit();
     void restore(std::size_t taken);
     RuleWord word_of(const Rule& rule) const;
     void add_turn(RuleWord& word, std::int32_t turn) const;
@@ -160,7 +165,9 @@ class Unfolding {
     struct Taken {
         std::uint32_t bundle = 0, from = 0, to = 0;
     };
-    std::vector<Taken> taken_; ///< in the order of drawing
+    std::vector<Taken> taken_;   ///< in the order of drawing
+    std::int32_t direction_ = 0; ///< of the first stroke
+    unsigned order_ = 0;
     std::uint64_t modules_ = 0, most_modules_ = 0;
     unsigned depth_ = 0;
     bool gave_up_ = false;

@@ -1,5 +1,6 @@
 #include "runtime/inverse/lsystem/found_lsystem.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -19,7 +20,11 @@
 namespace graftal {
 namespace {
 
+using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+using ::testing::Not;
 
 class FoundLsystemTest : public ::testing::Test {
   protected:
@@ -94,6 +99,8 @@ TEST_F(FoundLsystemTest, ClassicsAreFoundFromShuffledLines) {
         unsigned steps;
     } cases[] = {
         {"Koch curve", "angle 60\nsteps 4\naxiom F\nF -> F+F--F+F", 3, 8}, // by a root of its rule
+        {"island of a long rule", "angle 90\nsteps 2\naxiom F-F-F-F\nF -> F+FF-FF-F-F+F+FF-F-F+F+FF+FF-F", 22,
+         2},
         {"dragon", "angle 90\nsteps 8\naxiom A\nA -> A+B+\nB -> -A-B\ninterpret A -> F\ninterpret B -> F", 5,
          8},
         {"weed", "angle 25.7\nsteps 4\naxiom F\nF -> F[+F]F[-F]F", 6, 4},
@@ -331,6 +338,99 @@ TEST(StrokeGraphs, ManySizesOfTurnsAreNoAngles) {
     EXPECT_TRUE(stroke_graphs(strokes, 1e-6, meter, problem).empty());
     EXPECT_THAT(problem, HasSubstr("no angle"));
     EXPECT_EQ(work.seconds(), 0);
+}
+
+TEST(StrokeGraphs, APointIsOnePlaceWhateverComesBetween) {
+    // The points at -0.006 are within reach of the places at 0 and at -0.012, which comes later.
+    const Strokes strokes = {
+        {{0, 0}, {-1, 0}}, {{-0.006, -1}, {-0.006, 0}}, {{-1, 0}, {-0.012, 0}}, {{-0.006, 0}, {0.994, 0}}};
+    StageWork work;
+    const Control control{{}, {}, &work};
+    WorkMeter meter(control, "search", 4096, seconds_of_unfolded_module);
+    std::string problem;
+    const auto graphs = stroke_graphs(strokes, 0.01, meter, problem);
+    ASSERT_FALSE(graphs.empty()) << problem;
+    EXPECT_EQ(graphs[0].places.size(), 5u);
+    EXPECT_EQ(graphs[0].ways(0).size(), 2u) << "two strokes leave the first place";
+}
+
+TEST(Growths, SegmentsOfPartsOfRulesAreBounded) {
+    LsysGrowth growth{.letters = 2, .drawn = 2, .steps = 2};
+    PartialRules rules;
+    rules[0] = {{1, 0}, 1, 0}; // A -> A?
+    rules[1] = {{0, 3}, 0, 0}; // B -> BBB
+    const SegmentRange edges = segment_range(growth, rules, 1000);
+    EXPECT_EQ(edges.least, 4u) << "AA";
+    EXPECT_EQ(edges.most, 5u) << "AB: 2 and 3";
+    growth = {.letters = 2, .drawn = 1, .straight = 2, .axiom_letter = 1, .steps = 3};
+    rules[0] = {{2, 0}, 0, 0}; // F -> FF
+    rules[1] = {{1, 0}, 0, 2}; // X -> F??
+    const SegmentRange nodes = segment_range(growth, rules, 1000);
+    EXPECT_EQ(nodes.least, 12u) << "X -> FXX: 1, 4, 12";
+    EXPECT_EQ(nodes.most, 12u);
+    EXPECT_EQ(segment_range(growth, rules, 10).most, 10u);
+}
+
+TEST(Growths, LengthsOfRulesAreListedOnceEach) {
+    StageWork work;
+    const Control control{{}, {}, &work};
+    WorkMeter meter(control, "search", 4096, seconds_of_unfolded_module);
+    const auto lengths = [&](GrowthKind kind, std::size_t most) {
+        std::vector<std::string> all;
+        for (const LsysGrowth& growth : growths(64, kind, false, meter))
+            if (growth.size() <= most)
+                all.push_back(fmt::format("{}x{} {},{} after {}", growth.axiom, growth.axiom_letter,
+                                          growth.drawn_in(0), growth.letters > 1 ? growth.drawn_in(1) : 0,
+                                          growth.steps));
+        return all;
+    };
+    EXPECT_THAT(lengths(GrowthKind::one_edge, 5),
+                ElementsAre("1x0 2,0 after 6", "2x0 2,0 after 5", "1x0 4,0 after 3"));
+    std::vector<std::string> two = lengths(GrowthKind::two_edges, 17);
+    EXPECT_THAT(two, IsSupersetOf({"1x0 2,2 after 6", "1x0 4,4 after 3", "2x0 2,2 after 5"}));
+    std::ranges::sort(two);
+    EXPECT_EQ(std::ranges::adjacent_find(two), two.end());
+    EXPECT_THAT(two, Not(Contains("1x0 3,3 after 4"))) << "81 segments";
+}
+
+TEST(Unfoldings, EachOrderOfGuessesFindsTheSystem) {
+    Strokes strokes; // F -> F[+F]F[-F]F with an angle of 30 degrees, after 2 steps
+    const auto draw = [&](const auto& self, Vec2 at, double deg, int level) -> Vec2 {
+        const Vec2 step(std::cos(deg * std::numbers::pi / 180), std::sin(deg * std::numbers::pi / 180));
+        if (level == 0) return strokes.push_back({at, at + step}), at + step;
+        for (const double branch : {30.0, -30.0, 0.0}) {
+            at = self(self, at, deg, level - 1);
+            if (branch != 0) self(self, at, deg + branch, level - 1);
+        }
+        return at;
+    };
+    draw(draw, {0, 0}, 90, 2);
+    StageWork work;
+    const Control control{{}, {}, &work};
+    WorkMeter meter(control, "search", 4096, seconds_of_unfolded_module);
+    std::string problem;
+    const auto graphs = stroke_graphs(strokes, 0.01, meter, problem);
+    ASSERT_EQ(graphs.size(), 1u) << problem;
+    const StrokeGraph& graph = graphs[0];
+    LsysGrowth growth{.steps = 2};
+    growth.rules[0] = {5};
+    Unfolding unfolding(graph, meter);
+    ASSERT_EQ(graph.starts.size(), 1u);
+    for (unsigned order = 0; order < 8; ++order) {
+        EXPECT_TRUE(unfolding.find(growth, graph.starts[0], 0, 100'000, order)) << order;
+        EXPECT_FALSE(unfolding.find(growth, graph.starts[0], 1, 100'000, order)) << "no stroke begins so";
+        EXPECT_FALSE(unfolding.gave_up());
+    }
+}
+
+TEST_F(FoundLsystemTest, RulesOfLettersThatDrawMayHaveAnyLengths) {
+    const auto found = find("d.csv",
+                            listed(drawing("lsys m {\nangle 36\nsteps 4\naxiom A\nA -> A+AB-A\nB -> B-A\n"
+                                           "interpret A -> F\ninterpret B -> F\n}\n")),
+                            2);
+    ASSERT_TRUE(found) << message_;
+    EXPECT_EQ(found->redrawn, found->strokes);
+    EXPECT_LE(found->letters, 7u) << found->text;
 }
 
 TEST_F(FoundLsystemTest, ModelsInSpaceAreRefused) {

@@ -11,8 +11,8 @@ namespace graftal {
 
 namespace {
 
-constexpr double seconds_of_map = 6e-9; ///< a map applied to a point, with what is noted of its cell
-constexpr double given_up = 1e12;       ///< the price of an attractor that nobody wants
+constexpr double seconds_of_step = 6e-9; ///< a map applied to a point, with what is noted of its cell
+constexpr double given_up = 1e12;        ///< the price of an attractor that nobody wants
 constexpr std::size_t chain_count = 4;
 constexpr double known_share = 0.2;                 ///< of the work, for search()
 constexpr double last_share = 0.15;                 ///< of the work, for the finer parts of cells
@@ -144,14 +144,14 @@ class Annealing {
         for (const PlaneMaps& maps : systems)
             if (const double now = price.of(maps, given_up, work); first.maps.empty() || now < first.price)
                 first = {maps, maps, now, now};
-        seconds_ += static_cast<double>(work) * seconds_of_map;
+        seconds_ += static_cast<double>(work) * seconds_of_step;
         chains_.assign(chain_count, first);
     }
 
     /// Anneals until this share of the work is done. After each stage, the worst chain goes on from where
     /// the best one is; each still knows the best that it was.
     void cool(int stages, double until, double first_heat, double last_heat) {
-        const double work = (until * options_.seconds - seconds_) / seconds_of_map / stages /
+        const double work = (until * options_.seconds - seconds_) / seconds_of_step / stages /
                             static_cast<double>(chains_.size());
         for (int stage = 0; stage < stages && work > 0 && !cancel_.raised(); ++stage) {
             const double heat = first_heat * std::pow(last_heat / first_heat, (stage + 0.5) / stages);
@@ -164,7 +164,7 @@ class Annealing {
                 costs[number] = anneal(chains_[number], *price, heat, work, draws);
             });
             for (const std::uint64_t cost : costs)
-                seconds_ += static_cast<double>(cost) * seconds_of_map;
+                seconds_ += static_cast<double>(cost) * seconds_of_step;
             const auto cheaper = [](const Chain& a, const Chain& b) { return a.price < b.price; };
             const auto [least, most] = std::minmax_element(chains_.begin(), chains_.end(), cheaper);
             most->maps = least->maps;

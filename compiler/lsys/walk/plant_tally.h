@@ -78,7 +78,7 @@ class PlantTally : public WordWitness {
     std::vector<Part> parts_;
     std::size_t sum_count_ = 0;      ///< of parts_
     std::size_t addition_count_ = 0; ///< of those sums to others
-    std::vector<Part> open_;    ///< those under way; the first is the whole word
+    std::vector<Part> open_;         ///< those under way; the first is the whole word
     std::vector<std::string> materials_;
     SymbolId running_ = 0; ///< the module that the turtle carries out
 };

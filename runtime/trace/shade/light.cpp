@@ -95,7 +95,8 @@ Rgb Shader::sky_light(double front_chance, const Point& point, double body, Vec3
     return share / density_pi * light * light_through({from, direction}, {least}, *point.inside);
 }
 
-/// The share of a light that scatters to the viewer, without its colour. `cosine`: to the light, below 0 behind.
+/// The share of a light that scatters to the viewer, without its colour. `cosine`: to the light, below 0
+/// behind.
 double Shader::scattered(const Point& point, double cosine) {
     const Material& material = *point.material;
     return (cosine < 0 ? material.translucency : material.diffuse) *

@@ -37,13 +37,13 @@ struct Shader::Point {
     const Material* material;
     double specular, roughness, blur; ///< the material's, with what a relief too fine to be seen does
     double facing = 1;                ///< facing_of_relief() of that
-    const Inside* inside; ///< on the viewer's side
-    Rgb mirrored{0.0};    ///< share of light that is
-    double mirrors = 0;   ///< how much that counts
-    double body = 1;      ///< share of what scatters by the surface's colour
-    Rgb through{0.0};     ///< share that goes through
-    double shone_on = 1;  ///< share of what shines on it that is left (SurfaceHit::light_share)
-    Vec3 far_side{0.0};   ///< where light from behind falls on it: `position`, but of a sheet
+    const Inside* inside;             ///< on the viewer's side
+    Rgb mirrored{0.0};                ///< share of light that is
+    double mirrors = 0;               ///< how much that counts
+    double body = 1;                  ///< share of what scatters by the surface's colour
+    Rgb through{0.0};                 ///< share that goes through
+    double shone_on = 1;              ///< share of what shines on it that is left (SurfaceHit::light_share)
+    Vec3 far_side{0.0};               ///< where light from behind falls on it: `position`, but of a sheet
 };
 
 } // namespace graftal

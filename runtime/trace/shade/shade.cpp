@@ -322,7 +322,8 @@ bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit, const Know
         const Material& material = view_.ground->material;
         const Vec3 place = ray(t);
         // A pixel that looks along the ground sees a long, narrow piece of it: a square of its area counts.
-        const double footprint = least_distance(place, 1) / std::sqrt(std::max(std::abs(ray.direction.y), 1e-3));
+        const double footprint =
+            least_distance(place, 1) / std::sqrt(std::max(std::abs(ray.direction.y), 1e-3));
         const PatternValue at = pattern_at(material.pattern, 1, footprint, place);
         work_ += RayWork::pattern_wave * material.pattern.waves();
         hit.rgb = pattern_colour(material.pattern, material.rgb, at.value);

@@ -312,7 +312,8 @@ void Traversal::surface_at_best(SurfaceHit& hit) const {
 Rgb Traversal::pattern_at_best(double size, SurfaceHit& hit) const {
     const Vec3 place = ray_(best_.t);
     const SolidPattern& pattern = hit.material->pattern;
-    const PatternValue at = pattern_at(pattern, size, 1 / model_.projection.pixels_per_unit({place, 0}), place);
+    const PatternValue at =
+        pattern_at(pattern, size, 1 / model_.projection.pixels_per_unit({place, 0}), place);
     if (pattern.bump != 0) {
         if (glm::dot(hit.normal, ray_.direction) > 0) hit.normal = -hit.normal;
         hit.normal = bumped(hit.normal, at.relief, pattern.bump, glm::normalize(ray_.direction));

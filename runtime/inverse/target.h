@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "runtime/image/distance_transform.h"
 #include "runtime/inverse/cell_lattice.h"
 #include "runtime/inverse/space_map.h"
-#include "runtime/points/distance_transform.h"
 
 namespace graftal {
 

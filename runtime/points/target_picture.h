@@ -6,7 +6,7 @@
 
 #include "compiler/support/status.h"
 #include "compiler/support/tint.h"
-#include "runtime/points/distance_transform.h"
+#include "runtime/image/distance_transform.h"
 
 namespace graftal {
 

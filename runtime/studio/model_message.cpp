@@ -138,6 +138,15 @@ nlohmann::json findings_message(std::uint32_t number, const Compilation& compila
     return {{"type", "findings"}, {"number", number}, {"findings", std::move(findings)}};
 }
 
+nlohmann::json progress_message(std::uint32_t id, const FileShare& share) {
+    return {{"type", "progress"}, {"number", id}, {"stage", share.stage}, {"share", share.share}};
+}
+
+bool is_news(const FileShare& share, const FileShare& told) {
+    constexpr double steps = 1000;
+    return share.stage != told.stage || std::floor(steps * share.share) > std::floor(steps * told.share);
+}
+
 nlohmann::json pass_message(std::uint32_t number, const ShownPass& shown) {
     const auto or_null = [](const std::optional<double>& value) {
         return value ? nlohmann::json(*value) : nlohmann::json();

@@ -6,6 +6,7 @@
 
 #include "compiler/session/session.h"
 #include "runtime/studio/picture/progressive_picture.h"
+#include "runtime/studio/studio_home.h"
 #include "runtime/studio/studio_state.h"
 
 namespace graftal {
@@ -21,6 +22,11 @@ nlohmann::json model_message(const StudioState& state, const LoweredModel& lower
 
 /// The message `pass`.
 nlohmann::json pass_message(std::uint32_t number, const ShownPass& shown);
+
+/// The message `progress` of the job with this id.
+nlohmann::json progress_message(std::uint32_t id, const FileShare& share);
+/// Whether a share is to be told. Shares are told by thousandths, so that the end of each stage is, too.
+bool is_news(const FileShare& share, const FileShare& told);
 
 /// A camera as the page says it, which looks at a point this far away.
 nlohmann::json camera_json(const Camera& camera, double distance);

@@ -42,7 +42,7 @@ struct FileJob {
 
 /// The part of a job that is done: each stage goes from 0 to 1.
 struct FileShare {
-    std::string stage; ///< "measure", "draw" or "assemble"
+    std::string stage; ///< "measure", "draw", "assemble", or "fit" of maps
     double share = 0;
 };
 

@@ -1,7 +1,6 @@
 #include "runtime/studio/studio_session.h"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <new>
 #include <utility>
@@ -22,8 +21,6 @@ namespace graftal {
 namespace {
 
 constexpr std::size_t most_message_bytes = 16u << 20u;
-/// Factor of one ask for a zoom.
-constexpr double least_factor = 1e-3;
 /// Asks, and faults, that wait for their answers.
 constexpr std::size_t most_waiting = 256;
 constexpr std::size_t most_waiting_bytes = 2 * most_message_bytes; // of all asks
@@ -41,12 +38,6 @@ nlohmann::json parsed(std::string_view message) {
 
 nlohmann::json fault_message(const std::string& text) {
     return {{"type", "fault"}, {"text", text}};
-}
-
-/// Shares are told by thousandths, so that the end of each stage is, too.
-bool is_news(const FileShare& share, const FileShare& told) {
-    constexpr double steps = 1000;
-    return share.stage != told.stage || std::floor(steps * share.share) > std::floor(steps * told.share);
 }
 
 /// Work for the rays of a thumbnail, and for the model that they go through, whatever it took to prepare
@@ -134,6 +125,8 @@ bool StudioSession::work(double budget_seconds) {
             const auto cut_short = [&] { return clock_seconds() > latest; };
             if (stage_ == Stage::compile)
                 compile();
+            else if (fitting_ && !draws_first())
+                step_fit();
             else if (!thumbnails_.empty() && !draws_first())
                 draw_thumbnail(cut_short);
             else if (stage_ == Stage::picture)
@@ -178,6 +171,7 @@ void StudioSession::take_state() {
         return;
     }
     confine_files(state_, home_);
+    if (fitting_ && !fitting_->fit->is_about(state_)) end_fit("the model was changed meanwhile");
     if (laid_.lay(state_.files)) forget_files();
     stage_ = Stage::compile;
 }
@@ -414,16 +408,18 @@ bool StudioSession::answer_next() {
     }
     nlohmann::json message{{"type", "answer"}, {"id", ask.id}};
     try {
-        if (ask.what == "write" || ask.what == "thumbnail") {
+        if (ask.what == "write" || ask.what == "thumbnail" || ask.what == "fit") {
             if (!state_.text) throw BadMessage("no state was sent");
             if (ask.what == "write")
                 start_file(ask);
+            else if (ask.what == "fit")
+                start_fit(ask);
             else
                 thumbnails_.push_back(thumbnail_of(ask));
             return true;
         }
         if (ask.what == "stop")
-            file_stopped_ = true;
+            stop_job(ask);
         else
             message.update(answer(ask));
     } catch (const std::bad_alloc&) {
@@ -484,13 +480,7 @@ void StudioSession::tell_of_file() {
         writing_->told = writing_->share;
         writing = writing_->result ? std::exchange(writing_, std::nullopt) : writing_;
     }
-    if (!writing->result) {
-        send({{"type", "progress"},
-              {"number", writing->id},
-              {"stage", writing->share.stage},
-              {"share", writing->share.share}});
-        return;
-    }
+    if (!writing->result) return send(progress_message(writing->id, writing->share));
     const FileResult& result = *writing->result;
     nlohmann::json message{{"type", "answer"}, {"id", writing->id}};
     if (!result.error.empty())
@@ -501,50 +491,6 @@ void StudioSession::tell_of_file() {
         sink_.binary(
             file_message(writing->id, result.name.size(), home_.deflated(result.name + result.contents)));
     send(message);
-}
-
-nlohmann::json StudioSession::answer_text(const Ask& ask) {
-    Compilation unheard; // its findings were told
-    const bool is_whole = !compilation_.diagnostics.has_errors() && model_.session;
-    const auto lowered = is_whole ? model_.session->lowered(state_.stages, unheard) : nullptr;
-    const auto analysed = lowered ? model_.session->analysed(state_.stages, unheard) : nullptr;
-    StageWork work = stage_work(state_.stages);
-    EditContext context;
-    context.lower = state_.stages.lower;
-    context.help.control = {CancelFlag([this] { return outdated(); }), {}, &work};
-    context.help.translator = home_.translator();
-    context.help.files = &laid_.files();
-    return answer_about_text(
-        ask.what, ask.message,
-        {state_, analysed.get(), lowered ? &lowered->notes.parameters : nullptr, context});
-}
-
-nlohmann::json StudioSession::answer(const Ask& ask) {
-    if (!state_.text) throw BadMessage("no state was sent");
-    const MessageReader fields(ask.message);
-    if (is_about_text(ask.what)) return answer_text(ask);
-    if (ask.what == "link") {
-        // A model may name files that are none of its kind: only where it is whole do their texts go out.
-        const bool is_whole = compilation_.status.ok() && !compilation_.diagnostics.has_errors();
-        return link_parts(state_, used_, is_whole ? laid_.files() : no_files());
-    }
-    if (ask.what == "open")
-        return opened_link(ask.message, home_, CancelFlag([this] { return stopped_.load(); }));
-    pointer_.look_at(state_);
-    if (ask.what == "pick") return pointer_.pick(fields.needed_number("x"), fields.needed_number("y"));
-    if (ask.what == "zoom") {
-        const double factor = fields.needed_number("factor");
-        if (!(factor >= least_factor && factor <= 1 / least_factor))
-            throw BadMessage("'factor' is out of range");
-        return pointer_.zoom({fields.needed_number("x"), fields.needed_number("y"),
-                              fields.number("dx").value_or(0), fields.number("dy").value_or(0), factor});
-    }
-    if (ask.what == "command") {
-        const nlohmann::json* const film = fields.object("film");
-        return {
-            {"command", command_line(film ? film_words(state_, *film) : command_words(state_, "render"))}};
-    }
-    throw BadMessage(fmt::format("there is no ask '{}'", ask.what));
 }
 
 } // namespace graftal

@@ -19,6 +19,7 @@
 #include "runtime/studio/pointer.h"
 #include "runtime/studio/studio_home.h"
 #include "runtime/studio/studio_state.h"
+#include "runtime/studio/text_fit.h"
 
 namespace graftal {
 
@@ -85,6 +86,14 @@ class StudioSession {
         std::optional<FileResult> result;
     };
 
+    /// Maps that are fitted to a target.
+    struct Fitting {
+        std::uint32_t id = 0;
+        std::unique_ptr<TextFit> fit;
+        FileShare told; ///< of the stage "fit"
+        bool stopped = false;
+    };
+
     /// A small picture of another state.
     struct Thumbnail {
         std::uint32_t id = 0;
@@ -108,6 +117,7 @@ class StudioSession {
     void forget_files();
     bool answer_next();
     Thumbnail thumbnail_of(const Ask& ask) const;
+    void stop_job(const Ask& ask);
     void start_file(const Ask& ask);
     void tell_of_file();
     void start_engine();
@@ -125,7 +135,12 @@ class StudioSession {
     void draw(const std::function<bool()>& cut_short);
     void fail(const std::string& why);
     nlohmann::json answer(const Ask& ask);
+    template<typename Answer> nlohmann::json about_text(const CancelFlag& cancel, const Answer& answer);
     nlohmann::json answer_text(const Ask& ask);
+    void start_fit(const Ask& ask);
+    void step_fit();
+    void end_fit();
+    void end_fit(const std::string& error);
     void send(const nlohmann::json& message);
     bool outdated() const { return stale_ || stopped_; }
 
@@ -155,6 +170,7 @@ class StudioSession {
     ModelSession model_{files_};
     ModelSession thumbnail_model_{laid_.files()};
     std::deque<Thumbnail> thumbnails_;
+    std::optional<Fitting> fitting_;
     Compilation compilation_; ///< of the state
     std::unique_ptr<ProgressivePicture> picture_;
     Pointer pointer_;

@@ -12,7 +12,6 @@
 #include "compiler/editing/format.h"
 #include "compiler/editing/hover.h"
 #include "compiler/editing/maps/maps.h"
-#include "compiler/editing/positions.h"
 #include "compiler/editing/rename.h"
 #include "compiler/editing/setting.h"
 #include "compiler/editing/vary.h"
@@ -60,10 +59,7 @@ class TextAsk {
     }
 
     Json edits_json(const std::vector<TextEdit>& edits) const {
-        Json list = Json::array();
-        for (const TextEdit& edit : edits)
-            list.push_back(with_place({{"text", edit.text}}, {0, edit.begin, edit.end}));
-        return list;
+        return graftal::edits_json(edits, positions_);
     }
 
     Json change_json(const MapChange& change) const {
@@ -231,6 +227,15 @@ Json answer_about_text(const std::string& what, const Json& ask, const AskedText
     if (asked.state.text->find('\r') != std::string::npos)
         throw BadMessage("lines of the text do not end by line feeds alone");
     return TextAsk(ask, asked).answer(what);
+}
+
+Json edits_json(const std::vector<TextEdit>& edits, const TextPositions& positions) {
+    Json list = Json::array();
+    for (const TextEdit& edit : edits)
+        list.push_back({{"text", edit.text},
+                        {"from", positions.utf16_of(edit.begin)},
+                        {"to", positions.utf16_of(edit.end)}});
+    return list;
 }
 
 void add_maps(Json& message, const StudioState& state, const AnalysedModel& model) {

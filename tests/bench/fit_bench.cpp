@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "runtime/inverse/found/voxel_target.h"
 #include "runtime/inverse/search.h"
-#include "runtime/inverse/voxel_target.h"
 
 namespace graftal {
 namespace {

@@ -24,7 +24,7 @@ rifs fern {
 /** Serves `folder` and the session; gives its address and what the page told. With `told.delay_ms`, states are answered so late; with
  * `told.passes` 1, their pictures stay rough; with `told.whole_seconds`, the work ends them sooner, but for the best; with `told.silent`,
  * nothing is varied, and else so many as `told.children`, with `told.later` as soon as `told.vary` is called; with `told.slow`,
- * `told.film` says when a film is done. After `told.drag_ms` drags are answered, after `told.pick_ms` picks, with `told.point`; null: with nothing.
+ * `told.film` says when a film is done; `told.fit` does so of a fit. After `told.drag_ms` drags are answered, after `told.pick_ms` picks, with `told.point`; null: with nothing.
  * A text that says `fits` is framed anew as the map left moves. */
 export async function serve(folder, modules, { name = 'fern.rifs', text = example } = {}, begun = {}) {
   const { WebSocketServer } = createRequire(path.join(modules, 'x'))('ws');
@@ -183,6 +183,11 @@ class MockSession {
         this.send(binary([0x4c494647, id, Buffer.byteLength(name), 0, 0, 0, 0, 0], Buffer.concat([Buffer.from(name), contents])));
         return answer({});
       }
+      case 'fit': // ends when the test says so
+        this.told.fit = { progress: (share) => this.send({ type: 'progress', number: id, stage: 'fit', share }), answer };
+        return undefined;
+      case 'stop':
+        return answer({});
       case 'link': // holds and lacks what the test says
         return answer({ name: state.name, files: this.told.files ?? {}, lacks: this.told.lacks ?? [] });
       case 'open':

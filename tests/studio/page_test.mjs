@@ -630,6 +630,73 @@ test('the view and the knob stand still under a hand that turns a map', async (h
   await hand.until(() => hand.last().camera === null, 'another change lets the model choose');
 }, { opened: { name: 'fern.rifs', text: example.replace('# A fern', '# It fits: a fern') } });
 
+test('maps are fitted to a picture: it stands behind the boxes, and one step of the history has the answer', async (hand, page, session) => {
+  const said = () => page.textContent('#fitted'), bar = page.locator('#panel-maps progress');
+  // Six pixels by four: a column that is dark, and a lone pixel.
+  const png = Buffer.from((await page.evaluate(() => {
+    const canvas = Object.assign(document.createElement('canvas'), { width: 6, height: 4 }), context = canvas.getContext('2d');
+    context.fillStyle = '#fff';
+    context.fillRect(0, 0, 6, 4);
+    context.fillStyle = '#333';
+    context.fillRect(1, 0, 1, 4);
+    context.fillRect(4, 3, 1, 1);
+    return canvas.toDataURL();
+  })).split(',')[1], 'base64');
+  const choose = (name, mimeType, buffer) => page.setInputFiles('#target', { name, mimeType, buffer });
+  await page.click('#tab-maps');
+  await page.click('#fit');
+  assert.match(await said(), /Choose a picture first/);
+  await choose('x.png', 'image/png', Buffer.from('no picture'));
+  await hand.until(async () => /x\.png is no picture/.test(await page.textContent('#said')), 'it is no picture');
+  await choose('wide.svg', 'image/svg+xml', Buffer.from('<svg xmlns="http://www.w3.org/2000/svg" width="20000" height="9"/>'));
+  await hand.until(async () => /20000x9 pixels/.test(await page.textContent('#said')), 'it is too wide');
+  assert.equal(await page.locator('.target').count(), 0);
+  await choose('t.png', 'image/png', png);
+  await page.waitForSelector('#maps-layer > .target:first-child');
+  // One unit wide from the origin: the map left moves its foot by 1.6, so lengths compare.
+  const box = await page.locator('.target').boundingBox(), unit_px = await page.evaluate(() => {
+    const { camera, size } = window.studio, bounds = document.getElementById('maps-layer').getBoundingClientRect();
+    const far = Math.hypot(...camera.location.map((value, i) => value - camera.look_at[i]));
+    return bounds.width / size.width_px * (camera.width ? size.width_px / camera.width : size.width_px / (2 * far * Math.tan(camera.angle_deg * Math.PI / 360)));
+  });
+  assert.ok(Math.abs(box.width - unit_px) < 1 && Math.abs(box.height - unit_px * 4 / 6) < 1, `${JSON.stringify(box)} ${unit_px}`);
+  const before = hand.last().text, at = before.indexOf('0.3  rotate');
+  await page.click('#fit');
+  await hand.until(() => session.told.fit, 'the fit is asked for');
+  assert.deepEqual(hand.asked('fit')[0].target, { width: 6, height: 4, cell: 1, runs: [1, 1, 5, 1, 5, 1, 5, 1, 2, 1, 1] });
+  session.told.fit.progress(0.4);
+  await hand.until(async () => (await bar.getAttribute('value')) === '0.4', 'the bar goes on');
+  await page.click('#stop-fit');
+  await hand.until(() => hand.asked('stop').length === 1, 'the stop is asked for');
+  assert.ok(hand.asked('stop')[0].number >= 2 ** 30);
+  const answer = { before: 0.61, iou: 0.9, iou_within_a_cell: 0.998, chamfer_cells: 0.02 };
+  session.told.fit.answer({ ...answer, edits: [{ from: at, to: at + 3, text: '0.28' }, { from: before.indexOf('0.16'), to: before.indexOf('0.16') + 4, text: '0.17' }] });
+  await hand.until(async () => /^Agreement 0\.998 within one cell, 0\.610 before; IoU 0\.900, Chamfer distance 0\.02/.test(await said()), 'the agreement is told');
+  await hand.settled();
+  assert.equal(hand.last().text, before.replace('0.3  rotate', '0.28  rotate').replace('0.16', '0.17'));
+  await page.click('#undo');
+  await hand.until(() => hand.last().text === before, 'it is one step');
+  // What it refuses is told; an answer about another text changes nothing.
+  await page.click('#fit');
+  await hand.until(() => hand.asked('fit').length === 2, 'it is asked again');
+  session.told.fit.answer({ error: 'The model does not meet the target.' });
+  await hand.until(async () => /does not meet/.test(await said()), 'the reason is told');
+  await page.click('#fit');
+  await hand.until(() => hand.asked('fit').length === 3, 'it is asked once more');
+  await hand.type_at('# A fern', ' changed');
+  session.told.fit.answer({ ...answer, edits: [{ from: 0, to: 9, text: '' }] });
+  await hand.until(async () => /changed meanwhile/.test(await said()), 'it is about another text');
+  assert.match(await hand.text(), /^# A fern.* changed/);
+  // A picture that is dropped is a target, and no model.
+  await page.click('#tab-knobs');
+  await page.evaluate((bytes) => {
+    const files = new DataTransfer();
+    files.items.add(new File([new Uint8Array(bytes)], 'dropped.png', { type: 'image/png' }));
+    dispatchEvent(new DragEvent('drop', { dataTransfer: files, cancelable: true }));
+  }, [...png]);
+  await hand.until(async () => (await page.textContent('#target-name')) === 'dropped.png', 'it is the target');
+});
+
 test('a map is chosen in the list by Enter, and moved by arrow keys', async (hand, page) => {
   await page.click('#tab-maps');
   await page.focus('[data-listed=right]');
@@ -902,7 +969,7 @@ test('a film tells what is done until its file is there', async (hand, page, ses
   await page.click('#save-film');
   await hand.until(() => session.told.film, 'the film is asked for');
   session.told.film.progress('draw', 0.5);
-  const doing = () => page.textContent('#panel-time [role=status]'), bar = page.locator('progress');
+  const doing = () => page.textContent('#panel-time [role=status]'), bar = page.locator('#panel-time progress');
   await hand.until(async () => (await doing()) === 'Drawing: 62 of 125 pictures are there', 'pictures are counted');
   assert.equal(await bar.getAttribute('value'), '0.5');
   session.told.film.progress('draw', 0.996);
@@ -1055,7 +1122,7 @@ test('fingers: one pans a flat model, two pan and zoom, a tap picks', async (han
 
 test('a file is opened, its text saved; the divider moves', async (hand, page) => {
   await page.click('#tab-out');
-  await page.setInputFiles('input[type=file]', { name: 'twig.rifs', mimeType: 'text/plain', buffer: Buffer.from('rifs twig {\r\n  map a { scale 0.5 }\r\n}\r\n') });
+  await page.setInputFiles('#panel-out input[type=file]', { name: 'twig.rifs', mimeType: 'text/plain', buffer: Buffer.from('rifs twig {\r\n  map a { scale 0.5 }\r\n}\r\n') });
   await hand.until(() => hand.last().name === 'twig.rifs', 'the file is the model');
   assert.equal(hand.last().text, 'rifs twig {\n  map a { scale 0.5 }\n}\n');
   await page.keyboard.press('Control+s');

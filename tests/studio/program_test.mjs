@@ -121,4 +121,35 @@ test('the saved picture is that of the command line; a reload finds all', async 
   assert.equal(await hand.pixels(), before);
 }, small);
 
+test('maps that are near a target are fitted to it, and all else of the text stays', async (hand, page) => {
+  const numbers = (text) => text.match(/^ {4}-?[\d.].*$/gm).map((row) => row.trim().split(/\s+/).map(Number));
+  const png = await page.evaluate(() => {
+    // The gasket on 128 by 128 pixels, by the bits of their places.
+    const canvas = Object.assign(document.createElement('canvas'), { width: 128, height: 128 }), context = canvas.getContext('2d');
+    for (let y = 0; y < 128; ++y) for (let x = 0; x < 128; ++x) if (!(x & y)) context.fillRect(x, 127 - y, 1, 1);
+    return canvas.toDataURL();
+  });
+  await page.click('#tab-maps');
+  await page.setInputFiles('#target', { name: 'gasket.png', mimeType: 'image/png', buffer: Buffer.from(png.split(',')[1], 'base64') });
+  await page.waitForSelector('#maps-layer > .target');
+  const before = await hand.text();
+  await page.click('#fit');
+  await hand.until(async () => /^Agreement/.test(await page.textContent('#fitted')), 'the fit ends');
+  const after = await hand.text(), wanted = [[0.5, 0, 0, 0.5, 0, 0], [0.5, 0, 0, 0.5, 0.5, 0], [0.5, 0, 0, 0.5, 0, 0.5]];
+  numbers(after).forEach((row, i) => row.forEach((number, k) => assert.ok(Math.abs(number - wanted[i][k]) < 1 / 128, after)));
+  assert.ok(numbers(before).flat().some((number, i) => Math.abs(number - wanted.flat()[i]) > 0.02));
+  assert.match(after, /^# off by hand\nrifs off \{/);
+  await page.click('#undo');
+  await hand.until(async () => (await hand.text()) === before, 'it is one step');
+}, {
+  ...small, opened: `# off by hand
+rifs off {
+  codes 2d {
+    0.47 0.03 0.01 0.52 0.02 -0.02
+    0.5 0.02 -0.03 0.5 0.53 0.01
+    0.53 -0.02 0.02 0.48 0.01 0.47
+  }
+}
+` });
+
 await test.done();

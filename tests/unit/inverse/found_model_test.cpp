@@ -1,4 +1,4 @@
-#include "runtime/inverse/found_model.h"
+#include "runtime/inverse/found/found_model.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "runtime/inverse/found_space.h"
+#include "runtime/inverse/found/found_space.h"
 
 #include <cmath>
 
@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runtime/inverse/start_model.h"
-#include "runtime/inverse/voxel_target.h"
+#include "runtime/inverse/found/start_model.h"
+#include "runtime/inverse/found/voxel_target.h"
 #include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "runtime/image/distance_transform.h"
 #include "runtime/image_files/image_files.h"
-#include "runtime/points/distance_transform.h"
 #include "runtime/points/draw_points.h"
 #include "runtime/system/file.h"
 #include "runtime/system/temporary_directory.h"

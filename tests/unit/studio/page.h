@@ -22,12 +22,13 @@ class MemoryHome final : public StudioHome {
     OpenedModel opened() const override { return model; }
     const Files& files() const override { return texts; }
     std::string root() const override { return folder; }
-    const Workers& workers(int) override { return alone; }
+    const Workers& workers(int) override { return *hands; }
 
     OpenedModel model{"crystal.rifs", "rifs crystal { }"};
     MemoryFiles texts;
     std::string folder; ///< out of which no file is used; "": any may be
     SerialWorkers alone;
+    const Workers* hands = &alone;
 };
 
 struct SeenTile {

@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/primitives/mesh_file.h"
-#include "runtime/inverse/found_model.h"
-#include "runtime/inverse/found_space.h"
+#include "runtime/inverse/found/found_model.h"
+#include "runtime/inverse/found/found_space.h"
 #include "runtime/inverse/lsystem/drawing_file.h"
 #include "runtime/inverse/lsystem/found_lsystem.h"
 #include "tools/graftal/commands.h"

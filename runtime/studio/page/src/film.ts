@@ -114,6 +114,7 @@ export class Film {
     this.doing.textContent = {
       measure: `Looking at the model at all moments, then drawing ${frames} pictures …`,
       draw: `Drawing: ${Math.floor(share * frames + 1e-6)} of ${frames} pictures are there`,
+      fit: '',
       assemble: `All ${frames} pictures are drawn. Writing ${file} …`,
     }[stage];
   }

@@ -38,6 +38,7 @@ const parts: [string, [string, string][]][] = [
     ['diamond at a side', 'stretch and shear'],
     ['round knob with an arrow', 'turn about the foot, where the cross is; with Shift by steps of 15°; with Alt about the middle'],
     ['arrow keys on a box, or on a name after Enter', 'move the map; with Shift turn and scale it'],
+    ['a picture dropped on the page', 'a target behind the boxes, to which Fit moves the maps'],
   ]],
   ['Everywhere', [
     ['Ctrl+Z, Ctrl+Shift+Z', 'undo and redo: text, knobs and camera'],

@@ -4,6 +4,7 @@ import { Digraph } from './digraph';
 import { by_id, element, soon } from './dom';
 import { Divider } from './divider';
 import { Editor } from './editor';
+import { Fit } from './fit';
 import { fill_help } from './help';
 import { History } from './history';
 import { Knobs } from './knobs';
@@ -47,6 +48,7 @@ class Page implements Studio, Listener {
   private readonly knobs: Knobs;
   private readonly presets: Presets;
   private readonly maps: Maps;
+  private readonly fitting: Fit;
   private readonly digraph: Digraph;
   private readonly point: PointTool;
   private readonly vary: Vary;
@@ -79,7 +81,9 @@ class Page implements Studio, Listener {
       this.tell_done();
     });
     const layer = (id: string) => by_id(id) as unknown as SVGSVGElement;
-    this.maps = new Maps(layer('maps-layer'), this, (event) => void this.point.pick(...this.view.at(event)).then(() => this.maps.draw()));
+    this.maps = new Maps(layer('maps-layer'), this, (event) => void this.point.pick(...this.view.at(event)).then(() => this.maps.draw()),
+      (camera) => this.fitting.drawn(camera));
+    this.fitting = new Fit(this, () => this.maps.draw());
     this.digraph = new Digraph(this);
     this.point = new PointTool(layer('point-layer'), by_id('picked'), this);
     this.view = new ViewControl(by_id('view'), this.picture.canvas, this, (x, y) => void this.point.pick(x, y));
@@ -96,7 +100,7 @@ class Page implements Studio, Listener {
     this.tabs = new Tabs(by_id('tabs'), by_id('panels'), [
       { id: 'text', label: 'Text', content: by_id('text') },
       { id: 'knobs', label: 'Knobs', content: element('div', {}, this.knobs.element, this.presets.element) },
-      { id: 'maps', label: 'Maps', content: element('div', {}, this.maps.list, this.digraph.element) },
+      { id: 'maps', label: 'Maps', content: element('div', {}, this.maps.list, this.fitting.element, this.digraph.element) },
       { id: 'vary', label: 'Vary', content: this.vary.element },
       { id: 'time', label: 'Time', content: this.time.element },
       { id: 'out', label: 'Save', content: this.out.element },
@@ -171,7 +175,9 @@ class Page implements Studio, Listener {
       const file = event.dataTransfer?.files[0];
       if (!file) return;
       event.preventDefault();
-      void this.out.open_file(file);
+      if (!file.type.startsWith('image/')) return void this.out.open_file(file);
+      this.tabs.select('maps');
+      void this.fitting.take(file);
     });
     new Divider(by_id('divider'), by_id('rooms'));
     addEventListener('pagehide', () => {
@@ -332,7 +338,8 @@ class Page implements Studio, Listener {
   }
 
   progress(message: Progress): void {
-    if (this.time.film.is_film(message.number)) this.time.film.progress(message);
+    if (this.fitting.is_fit(message.number)) this.fitting.progress(message);
+    else if (this.time.film.is_film(message.number)) this.time.film.progress(message);
     else this.say(message.share === 1 ? 'Writing the file …' : `Working on the file: ${Math.round(100 * message.share)} %`);
   }
 

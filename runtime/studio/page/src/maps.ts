@@ -44,6 +44,8 @@ export class Maps {
     private readonly overlay: SVGSVGElement, private readonly studio: Studio,
     /** A double click on a box is one on the picture. */
     private readonly pick: (event: PointerEvent) => void,
+    /** What stands behind the boxes. */
+    private readonly behind: (camera: Camera) => SVGElement | null,
   ) {
     this.ask = latest((wish) => this.ask_now(wish));
     // The overlay holds the pointer: its shapes are made anew while they are dragged.
@@ -91,7 +93,8 @@ export class Maps {
     const boxes = maps.map((map, i) => ({ map, made: this.box(map, i, camera, flat) }))
       .sort((a, b) => size_of(b.map) - size_of(a.map)).map(({ made }) => made);
     if (chosen >= 0) boxes.push(this.handles(maps[chosen]!, chosen, camera, flat));
-    this.overlay.replaceChildren(...boxes);
+    const behind = this.behind(camera);
+    this.overlay.replaceChildren(...(behind ? [behind] : []), ...boxes);
     if (focus) this.focus(focus);
   }
 

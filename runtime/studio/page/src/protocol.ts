@@ -121,7 +121,7 @@ export interface Model {
 export interface Progress {
   type: 'progress';
   number: number;
-  stage: 'measure' | 'draw' | 'assemble';
+  stage: 'measure' | 'draw' | 'assemble' | 'fit';
   share: number;
 }
 

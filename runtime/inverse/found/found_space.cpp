@@ -1,4 +1,4 @@
-#include "runtime/inverse/found_space.h"
+#include "runtime/inverse/found/found_space.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 #include "compiler/support/number.h"
 #include "compiler/support/printable.h"
-#include "runtime/inverse/start_model.h"
-#include "runtime/inverse/voxel_target.h"
+#include "runtime/inverse/found/start_model.h"
+#include "runtime/inverse/found/voxel_target.h"
 #include "runtime/system/file.h"
 #include "runtime/system/worker_threads.h"
 

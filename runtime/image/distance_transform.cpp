@@ -1,4 +1,4 @@
-#include "runtime/points/distance_transform.h"
+#include "runtime/image/distance_transform.h"
 
 #include <algorithm>
 #include <cmath>

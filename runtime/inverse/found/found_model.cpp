@@ -1,4 +1,4 @@
-#include "runtime/inverse/found_model.h"
+#include "runtime/inverse/found/found_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,81 +9,16 @@
 
 #include "compiler/support/number.h"
 #include "compiler/support/printable.h"
+#include "runtime/inverse/found/start_model.h"
 #include "runtime/inverse/occupancy.h"
-#include "runtime/inverse/start_model.h"
+#include "runtime/inverse/target_frame.h"
 #include "runtime/system/worker_threads.h"
 
 namespace graftal {
 
 namespace {
 
-constexpr int cells_a_side = 256;       ///< of the box around the target, at most
-constexpr int read_cells_a_side = 1024; ///< of the whole picture, at most
-constexpr std::size_t least_cells = 24; ///< that tell anything of maps
 constexpr double half_diagonal = 0.70710678118654752;
-
-/// The box around the set, in cells of `size` cells each.
-struct Crop {
-    CellSet set{0, 0};
-    int left = 0, top = 0, size = 1;
-};
-
-Crop cropped(const CellSet& whole) {
-    Crop crop;
-    int right = 0, bottom = 0;
-    crop.left = whole.width;
-    crop.top = whole.height;
-    for (int y = 0; y < whole.height; ++y)
-        for (int x = 0; x < whole.width; ++x) {
-            if (!whole.at(x, y)) continue;
-            crop.left = std::min(crop.left, x);
-            crop.top = std::min(crop.top, y);
-            right = std::max(right, x + 1);
-            bottom = std::max(bottom, y + 1);
-        }
-    const int width = right - crop.left, height = bottom - crop.top;
-    crop.size = (std::max(width, height) + cells_a_side - 1) / cells_a_side;
-    crop.set = CellSet((width + crop.size - 1) / crop.size, (height + crop.size - 1) / crop.size);
-    for (int y = crop.top; y < bottom; ++y)
-        for (int x = crop.left; x < right; ++x)
-            if (whole.at(x, y))
-                crop.set.cells[crop.set.index((x - crop.left) / crop.size, (y - crop.top) / crop.size)] =
-                    true;
-    return crop;
-}
-
-/// The model's frame: model = scale * cell + origin, with y up.
-class Frame {
-  public:
-    Frame(const TargetPicture& picture, const Crop& crop, int room) {
-        const double pixels = picture.pixels_per_cell, width = picture.width;
-        scale_ = crop.size * pixels / width;
-        origin_ = {crop.left * pixels / width - room * scale_,
-                   (picture.height - crop.top * pixels) / width + room * scale_};
-    }
-
-    double scale() const { return scale_; }
-    PlaneMap in_model(const PlaneMap& map) const {
-        return conjugate(
-            map, [this](Vec2 p) { return Vec2((p.x - origin_.x) / scale_, (origin_.y - p.y) / scale_); },
-            [this](Vec2 p) { return Vec2(origin_.x + scale_ * p.x, origin_.y - scale_ * p.y); });
-    }
-    PlaneMap in_cells(const PlaneMap& map) const {
-        return conjugate(
-            map, [this](Vec2 p) { return Vec2(origin_.x + scale_ * p.x, origin_.y - scale_ * p.y); },
-            [this](Vec2 p) { return Vec2((p.x - origin_.x) / scale_, (origin_.y - p.y) / scale_); });
-    }
-
-  private:
-    template<typename Back, typename There>
-    static PlaneMap conjugate(const PlaneMap& map, const Back& back, const There& there) {
-        const Vec2 image = there(map(back({0, 0})));
-        return {map.a, -map.b, -map.c, map.d, image.x, image.y};
-    }
-
-    double scale_ = 1;
-    Vec2 origin_{0.0};
-};
 
 double rounded(double value, int digits) {
     std::string text;
@@ -162,7 +97,7 @@ std::vector<Rgb> colours_of(const Target& target, const TargetPicture& picture, 
 }
 
 /// Maps of a model to begin with, in cells.
-std::optional<PlaneMaps> start_of(const FindOptions& options, const Frame& frame, const Target& target,
+std::optional<PlaneMaps> start_of(const FindOptions& options, const TargetFrame& frame, const Target& target,
                                   Compilation& compilation) {
     const auto known =
         starting_maps(options.start, options.compile, options.search.most_maps, true, compilation);
@@ -183,7 +118,7 @@ std::optional<FoundModel> find_model(const FindOptions& options, const CancelFla
                                      Compilation& compilation) {
     TargetPicture picture;
     compilation.status =
-        read_target(options.target, options.criterion, picture, read_cells_a_side, options.in_colour);
+        read_target(options.target, options.criterion, picture, most_read_cells_a_side, options.in_colour);
     if (!compilation.status.ok()) return std::nullopt;
     if (picture.empty()) {
         compilation.diagnostics
@@ -194,7 +129,7 @@ std::optional<FoundModel> find_model(const FindOptions& options, const CancelFla
     const Crop crop = cropped(picture.cells);
     const auto cells =
         static_cast<std::size_t>(std::count(crop.set.cells.begin(), crop.set.cells.end(), true));
-    if (cells < least_cells) {
+    if (cells < least_target_cells) {
         compilation.diagnostics
             .error({}, fmt::format(
                            "the target '{}' is too small to tell maps by: only {} of its {}x{} pixels "
@@ -204,11 +139,11 @@ std::optional<FoundModel> find_model(const FindOptions& options, const CancelFla
             .with_hint(
                 fmt::format("a figure has at least {} such pixels: draw it larger, take paler pixels by "
                             "--threshold 0.8, or the light ones by --light",
-                            least_cells));
+                            least_target_cells));
         return std::nullopt;
     }
     const Target target(crop.set);
-    const Frame frame(picture, crop, target.room());
+    const TargetFrame frame({picture.width, picture.height, picture.pixels_per_cell}, crop, target.room());
     SearchOptions search_options = options.search;
     std::optional<PlaneMaps> start = start_of(options, frame, target, compilation);
     if (!start) return std::nullopt;

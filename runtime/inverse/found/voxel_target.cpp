@@ -1,4 +1,4 @@
-#include "runtime/inverse/voxel_target.h"
+#include "runtime/inverse/found/voxel_target.h"
 
 #include <algorithm>
 #include <array>

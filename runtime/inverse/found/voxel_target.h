@@ -4,7 +4,7 @@
 #include <string>
 
 #include "compiler/primitives/mesh_file.h"
-#include "runtime/points/distance_transform.h"
+#include "runtime/image/distance_transform.h"
 
 namespace graftal {
 

@@ -1,4 +1,4 @@
-#include "runtime/inverse/start_model.h"
+#include "runtime/inverse/found/start_model.h"
 
 #include <algorithm>
 

@@ -26,6 +26,7 @@ foreach(test
   unit/inst/InstHostile.many_errors_end
   unit/inst/InstHostile.wide_objects_are_bounded_by_the_number_of_instances
   unit/inst/Scatter.every_order_gives_the_count_inside_what_is_left_of_the_area
+  unit/inverse/EqualPartsTest.FourRulesOfATreeAreFound
   unit/lsp/LanguageServer.LooksAtScenes
   unit/lsp/LanguageServer.TakesAnyMessage
   unit/lsys/LsysChance.everyWayOfCompilingDealsItOut

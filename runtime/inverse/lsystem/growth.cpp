@@ -139,11 +139,12 @@ class GrowthTable {
 
 /// Letters that all draw, of which only the lengths of their rules are known: all lengths within a bound, or
 /// one for all.
-void add_edge_systems(GrowthTable& table, std::uint8_t letters, std::uint8_t longest) {
+void add_edge_systems(GrowthTable& table, std::uint8_t letters, std::uint8_t longest, bool for_tree) {
     LsysGrowth growth{.letters = letters, .drawn = letters};
     std::vector<Counts> list = rows(letters, {longest, longest, longest}, longest);
     std::erase(list, Counts{});
     if (letters > 1) table.try_rows(growth, std::vector(letters, list), SIZE_MAX);
+    if (for_tree) return;
     table.forget_letters();
     growth.by_letter = letters == 1;
     for (std::uint8_t length = letters == 1 ? 2 : longest + 1; length <= 40; ++length) {
@@ -153,15 +154,15 @@ void add_edge_systems(GrowthTable& table, std::uint8_t letters, std::uint8_t lon
     }
 }
 
-void add_three_nodes(GrowthTable& table, std::uint8_t straight) {
+void add_three_nodes(GrowthTable& table, std::uint8_t straight, bool for_tree) {
     LsysGrowth growth{.letters = 4, .drawn = 1, .straight = straight, .axiom_letter = 1};
     growth.rules[0][0] = straight;
-    const std::vector<Counts> three = rows(4, {3, 3, 3, 3}, 6);
-    table.try_rows(growth, {{growth.rules[0]}, three, three, three}, 19);
+    const std::vector<Counts> three = for_tree ? rows(4, {5, 2, 2, 2}, 8) : rows(4, {3, 3, 3, 3}, 6);
+    table.try_rows(growth, {{growth.rules[0]}, three, three, three}, for_tree ? 22 : 19);
 }
 
 /// A letter that draws, and grows straight; others mark where rules go on.
-void add_node_systems(GrowthTable& table, std::uint8_t hidden, std::uint8_t straight) {
+void add_node_systems(GrowthTable& table, std::uint8_t hidden, std::uint8_t straight, bool for_tree) {
     LsysGrowth growth{.letters = std::size_t{1} + hidden,
                       .drawn = 1,
                       .straight = straight,
@@ -177,7 +178,7 @@ void add_node_systems(GrowthTable& table, std::uint8_t hidden, std::uint8_t stra
     growth.by_letter = true;
     const std::vector<Counts> two = rows(3, {7, 5, 5}, 10);
     if (hidden == 2) table.try_rows(growth, {{growth.rules[0]}, two, two}, 20);
-    if (hidden == 3) add_three_nodes(table, straight);
+    if (hidden == 3) add_three_nodes(table, straight, for_tree);
 }
 
 /// A letter that draws and has a rule of its own, beside one that does not.
@@ -231,17 +232,18 @@ SegmentRange segment_range(const LsysGrowth& growth, const PartialRules& rules, 
     return range[growth.axiom_letter];
 }
 
-std::vector<LsysGrowth> growths(std::uint64_t segments, GrowthKind kind, bool sized, WorkMeter& meter) {
+std::vector<LsysGrowth> growths(std::uint64_t segments, GrowthKind kind, bool sized, WorkMeter& meter,
+                                bool for_tree) {
     GrowthTable table(segments, meter);
     if (kind <= GrowthKind::three_edges) {
         constexpr std::uint8_t longest[] = {1, 10, 7};
         const auto number = static_cast<std::uint8_t>(kind);
-        if (!sized) add_edge_systems(table, number + 1, longest[number]);
+        if (!sized) add_edge_systems(table, number + 1, longest[number], for_tree);
         return table.sorted();
     }
     if (kind == GrowthKind::one_node && !sized) add_mixed_systems(table);
     for (std::uint8_t straight = 1; straight <= (sized ? 1 : 3); ++straight)
-        add_node_systems(table, static_cast<std::uint8_t>(kind) - 2, straight);
+        add_node_systems(table, static_cast<std::uint8_t>(kind) - 2, straight, for_tree);
     return table.sorted();
 }
 

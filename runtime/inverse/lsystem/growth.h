@@ -52,8 +52,15 @@ SegmentRange segment_range(const LsysGrowth& growth, const PartialRules& rules, 
 enum class GrowthKind : std::uint8_t { one_edge, two_edges, three_edges, one_node, two_nodes, three_nodes };
 inline constexpr std::size_t growth_kinds = 6;
 
+/// A rule without its turns: letters by number, and brackets.
+using BareWord = std::vector<std::int8_t>;
+inline constexpr std::int8_t bare_open = -1, bare_close = -2;
+using BareRules = std::array<BareWord, LsysGrowth::most_letters>;
+
 /// Numbers of letters, within bounds, that draw so many segments after two or more steps; smaller ones come
-/// first, then those of more steps. `sized`: segments of each step have a length of their own.
-std::vector<LsysGrowth> growths(std::uint64_t segments, GrowthKind kind, bool sized, WorkMeter& meter);
+/// first, then those of more steps. `sized`: segments of each step have a length of their own. `for_tree`: of
+/// letters that all draw, the numbers of each; and of three that do not, longer rules of more segments.
+std::vector<LsysGrowth> growths(std::uint64_t segments, GrowthKind kind, bool sized, WorkMeter& meter,
+                                bool for_tree = false);
 
 } // namespace graftal

@@ -26,7 +26,7 @@ Unfolding::Unfolding(const StrokeGraph& graph, WorkMeter& meter)
 
 std::optional<FoundGrammar> Unfolding::find(const LsysGrowth& growth, std::uint32_t start,
                                             std::int32_t direction, std::uint64_t most_modules,
-                                            unsigned order) {
+                                            unsigned order, const BareRules* known) {
     growth_ = growth;
     order_ = order;
     direction_ = direction;
@@ -39,6 +39,8 @@ std::optional<FoundGrammar> Unfolding::find(const LsysGrowth& growth, std::uint3
     for (Rule& rule : rules_)
         rule.gaps.emplace_back();
     rules_.back().end_turn = no_turn;
+    for (std::size_t rule = growth.straight > 0 ? 1 : 0; known && rule < growth.letters; ++rule)
+        lay_down(rule, (*known)[rule]);
     State state;
     state.frames = {{static_cast<std::int16_t>(growth.letters), static_cast<std::int16_t>(growth.steps + 1)}};
     state.heading.count = 1;

@@ -43,8 +43,10 @@ class Unfolding {
     /// The first system with this growth that begins at this place in this direction, if one is found in so
     /// many modules. Each `order` from 1 on tries guesses in an order of its own: one may be lucky where
     /// another is not (Gomes, Selman and Kautz 1998, "Boosting combinatorial search through randomization").
+    /// `known`: rules of which only the turns are looked for.
     std::optional<FoundGrammar> find(const LsysGrowth& growth, std::uint32_t start, std::int32_t direction,
-                                     std::uint64_t most_modules, unsigned order = 0);
+                                     std::uint64_t most_modules, unsigned order = 0,
+                                     const BareRules* known = nullptr);
     /// Whether the last search ended by its limit.
     bool gave_up() const { return gave_up_; }
     /// Modules that the last search took.
@@ -113,6 +115,7 @@ class Unfolding {
         std::uint8_t length = 0; ///< their class
     };
 
+    void lay_down(std::size_t number, const BareWord& word);
     bool unfold(State state);
     bool is_reversed(const Frame& frame) const;
     bool follow(State& state);

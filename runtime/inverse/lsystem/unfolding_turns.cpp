@@ -80,6 +80,33 @@ void Unfolding::add_turn(RuleWord& word, std::int32_t turn) const {
     if (reduced(turn) != 0) word.push_back({RuleSymbol::Kind::turn, reduced(turn)});
 }
 
+/// Makes a rule of known letters and unknown turns. A bracket is a token if a letter in it draws.
+void Unfolding::lay_down(std::size_t number, const BareWord& word) {
+    Rule& rule = rules_[number];
+    bool draws = false;
+    for (auto at = word.begin(); at != word.end(); ++at) {
+        const Mark mark = *at == bare_open ? Mark::open : *at == bare_close ? Mark::close : Mark::letter;
+        const auto letter = static_cast<std::size_t>(*at);
+        if (mark == Mark::open)
+            draws = std::any_of(at + 1, std::find(at, word.end(), bare_close),
+                                [&](std::int8_t next) { return !is_hidden(static_cast<std::size_t>(next)); });
+        if (mark == Mark::letter) ++rule.counts[letter];
+        if (mark == Mark::letter ? is_hidden(letter) : !draws) {
+            rule.hidden += mark == Mark::letter;
+            rule.gaps.back().items.push_back({mark, *at, mark == Mark::letter ? new_turn() : no_turn});
+            continue;
+        }
+        const bool is_fixed = mark != Mark::letter || (rule.drawn == 0 && fixes_turn(number));
+        rule.drawn += mark == Mark::letter;
+        rule.tokens.push_back({mark, *at, is_fixed ? no_turn : new_turn()});
+        rule.gaps.emplace_back();
+    }
+    for (Gap& gap : rule.gaps)
+        gap.closed = true;
+    rule.complete = true;
+    rule.end_turn = new_turn();
+}
+
 RuleWord Unfolding::word_of(const Rule& rule) const {
     using Kind = RuleSymbol::Kind;
     constexpr Kind brackets[] = {Kind::letter, Kind::open, Kind::close};

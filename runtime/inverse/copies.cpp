@@ -269,6 +269,7 @@ std::vector<std::vector<Map>> covers(const std::vector<SelfCopy<Map>>& copies, c
     return result;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a type in brackets is none
 #define GRAFTAL_COPIES(Map)                                                                                  \
     template class CopySearch<Map>;                                                                          \
     template SampleSet covered_by(const Map&, const TargetOf<Map>&, double);                                 \
@@ -279,5 +280,6 @@ std::vector<std::vector<Map>> covers(const std::vector<SelfCopy<Map>>& copies, c
 GRAFTAL_COPIES(PlaneMap)
 GRAFTAL_COPIES(SpaceMap)
 #undef GRAFTAL_COPIES
+// NOLINTEND(bugprone-macro-parentheses)
 
 } // namespace graftal

@@ -368,6 +368,7 @@ double growth_value(const TargetOf<Map>& target, std::span<const typename Map::P
     return MapGrowth<Map>(target, inner, tau_px, MapRules()).value_of(map);
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a type in brackets is none
 #define GRAFTAL_REFINE(Map)                                                                                  \
     template Map ruled(const Map&, const TargetOf<Map>&, const MapRules&);                                   \
     template std::uint64_t grow(const TargetOf<Map>&, std::span<const Map::Point>, std::span<const double>,  \
@@ -378,5 +379,6 @@ double growth_value(const TargetOf<Map>& target, std::span<const typename Map::P
 GRAFTAL_REFINE(PlaneMap)
 GRAFTAL_REFINE(SpaceMap)
 #undef GRAFTAL_REFINE
+// NOLINTEND(bugprone-macro-parentheses)
 
 } // namespace graftal

@@ -56,10 +56,11 @@ Mat3 random_rotation(Draws& draws) {
 
 std::array<double, SpaceMap::entries> step_of(const Mat3& linear, Vec3 shift) {
     std::array<double, SpaceMap::entries> step{};
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column)
-            step[static_cast<std::size_t>(4 * row + column)] = linear[column][row];
-        step[static_cast<std::size_t>(4 * row + 3)] = shift[row];
+    for (std::size_t row = 0; row < 3; ++row) {
+        const auto of_row = static_cast<int>(row);
+        for (std::size_t column = 0; column < 3; ++column)
+            step[4 * row + column] = linear[static_cast<int>(column)][of_row];
+        step[4 * row + 3] = shift[of_row];
     }
     return step;
 }
@@ -83,13 +84,13 @@ std::array<std::array<double, 12>, 7> SpaceMap::similar_steps() const {
     const Mat3 turned = (1 / size) * linear;
     std::array<std::array<double, 12>, 7> steps;
     steps[0] = step_of(turned, Vec3(0.0));
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
         Vec3 axis(0.0);
-        axis[k] = 1;
+        axis[static_cast<int>(k)] = 1;
         const Mat3 turn(glm::cross(axis, turned[0]), glm::cross(axis, turned[1]),
                         glm::cross(axis, turned[2]));
-        steps[static_cast<std::size_t>(1 + k)] = step_of(turn, Vec3(0.0));
-        steps[static_cast<std::size_t>(4 + k)] = step_of(Mat3(0.0), axis);
+        steps[1 + k] = step_of(turn, Vec3(0.0));
+        steps[4 + k] = step_of(Mat3(0.0), axis);
     }
     return steps;
 }

@@ -450,7 +450,7 @@ void StudioSession::start_file(const Ask& ask) {
     {
         const std::lock_guard lock(inbox_);
         if (writing_) throw BadMessage("another file is being made");
-        writing_.emplace().id = ask.id;
+        writing_ = Writing{.id = ask.id, .share = {}, .told = {}, .result = {}};
         file_stopped_ = false;
     }
     const auto note = [this](const auto& change) {

@@ -120,8 +120,8 @@ class GrowthTable {
             return std::tuple(g.letters, g.drawn, g.straight, g.steps, g.axiom, g.rules);
         };
         std::ranges::sort(found_, {}, key);
-        const auto [first, last] = std::ranges::unique(found_, {}, key);
-        found_.erase(first, last);
+        const auto same = [&](const LsysGrowth& a, const LsysGrowth& b) { return key(a) == key(b); };
+        found_.erase(std::unique(found_.begin(), found_.end(), same), found_.end());
     }
 
     std::vector<LsysGrowth> sorted() {
@@ -242,8 +242,9 @@ std::vector<LsysGrowth> growths(std::uint64_t segments, GrowthKind kind, bool si
         return table.sorted();
     }
     if (kind == GrowthKind::one_node && !sized) add_mixed_systems(table);
-    for (std::uint8_t straight = 1; straight <= (sized ? 1 : 3); ++straight)
-        add_node_systems(table, static_cast<std::uint8_t>(kind) - 2, straight, for_tree);
+    for (int straight = 1; straight <= (sized ? 1 : 3); ++straight)
+        add_node_systems(table, static_cast<std::uint8_t>(kind) - 2, static_cast<std::uint8_t>(straight),
+                         for_tree);
     return table.sorted();
 }
 

@@ -201,7 +201,8 @@ bool Unfolding::may_fit() {
 
 /// Whether this order tries guesses at a place of a rule in reverse.
 bool Unfolding::is_reversed(const Frame& frame) const {
-    const auto place = static_cast<std::uint64_t>(frame.rule) * 64 + frame.token * 8u + frame.item + 1;
+    const auto place =
+        static_cast<std::uint64_t>(frame.rule) * 64 + std::uint64_t{8} * frame.token + frame.item + 1;
     return order_ > 0 &&
            ((order_ * 0x9E3779B97F4A7C15ull ^ place * 0xC2B2AE3D27D4EB4Full) * 0x94D049BB133111EBull >> 63) !=
                0;

@@ -86,7 +86,7 @@ void Unfolding::lay_down(std::size_t number, const BareWord& word) {
     bool draws = false;
     for (auto at = word.begin(); at != word.end(); ++at) {
         const Mark mark = *at == bare_open ? Mark::open : *at == bare_close ? Mark::close : Mark::letter;
-        const auto letter = static_cast<std::size_t>(*at);
+        const auto letter = static_cast<std::size_t>(static_cast<unsigned char>(*at));
         if (mark == Mark::open)
             draws = std::any_of(at + 1, std::find(at, word.end(), bare_close),
                                 [&](std::int8_t next) { return !is_hidden(static_cast<std::size_t>(next)); });

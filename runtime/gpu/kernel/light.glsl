@@ -93,10 +93,8 @@ void meet_level_at(float t, float height, uint material, INOUT(Hit) hit) {
 /// A material, with what the relief does that a surface has lost.
 Material material_at(uint number, float faded) {
     Material material = material_of(number);
-    if (PATTERNS && faded > 0.0f) {
-        material.facing = facing_of_relief(faded);
-        roughen_by_relief(faded, material.specular, material.roughness, material.blur);
-    }
+    if (PATTERNS && faded > 0.0f)
+        roughen_by_relief(faded, material.facing, material.specular, material.roughness, material.blur);
     return material;
 }
 

@@ -121,8 +121,10 @@ FORMULA real lit_from_all_sides(real facing) {
 }
 
 /// Gives the numbers of a material what a relief does that is too fine to be seen: its slopes spread highlights
-/// and mirrored rays. `faded`: the mean square of the slopes along one axis.
-FORMULA void roughen_by_relief(real faded, INOUT(real) specular, INOUT(real) roughness, INOUT(real) blur) {
+/// and mirrored rays. `faded`: the mean square of the slopes along one axis; `facing`: facing_of_relief().
+FORMULA void roughen_by_relief(real faded, OUT(real) facing, INOUT(real) specular, INOUT(real) roughness,
+                               INOUT(real) blur) {
+    facing = facing_of_relief(faded);
     // A highlight of exponent 1 / r is as wide as slopes of the mean square r; one twice as wide is half as bright.
     specular *= roughness / (roughness + faded);
     roughness += faded;

@@ -1,5 +1,7 @@
 #include "runtime/trace/shade/patterns.h"
 
+#include <glm/geometric.hpp>
+
 #include "runtime/trace/shade/formulas.h"
 
 namespace graftal {
@@ -41,6 +43,12 @@ PatternValue pattern_at(const SolidPattern& pattern, double size, double footpri
 
 Vec3 bumped(Vec3 normal, Vec3 relief, double bump, Vec3 ray_direction) {
     return formulas::pattern_normal(normal, bump * relief, ray_direction);
+}
+
+void show_relief(const PatternValue& at, double bump, Vec3 ray_direction, SurfaceHit& hit) {
+    if (glm::dot(hit.normal, ray_direction) > 0) hit.normal = -hit.normal;
+    hit.normal = bumped(hit.normal, at.relief, bump, ray_direction);
+    hit.faded = bump * bump * at.faded;
 }
 
 } // namespace graftal

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "compiler/graph/pattern.h"
+#include "runtime/trace/shade/surfaces.h"
 
 namespace graftal {
 
@@ -19,5 +20,8 @@ PatternValue pattern_at(const SolidPattern& pattern, double size, double footpri
 
 /// pattern_normal() of patterns.glsl where the relief is `bump` times as deep.
 Vec3 bumped(Vec3 normal, Vec3 relief, double bump, Vec3 ray_direction);
+
+/// Gives a hit the relief of a pattern there, `bump` times as deep. `ray_direction`: of unit length.
+void show_relief(const PatternValue& at, double bump, Vec3 ray_direction, SurfaceHit& hit);
 
 } // namespace graftal

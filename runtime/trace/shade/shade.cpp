@@ -327,9 +327,7 @@ bool Shader::closest(const Ray& ray, RayRange range, SurfaceHit& hit, const Know
         const PatternValue at = pattern_at(material.pattern, 1, footprint, place);
         work_ += RayWork::pattern_wave * material.pattern.waves();
         hit.rgb = pattern_colour(material.pattern, material.rgb, at.value);
-        if (ray.direction.y > 0) hit.normal = -hit.normal;
-        hit.normal = bumped(hit.normal, at.relief, material.pattern.bump, ray.direction);
-        hit.faded = material.pattern.bump * material.pattern.bump * at.faded;
+        show_relief(at, material.pattern.bump, ray.direction, hit);
     }
     if (ground_texture_) {
         const auto& srgb = ground_texel(ray(t)).srgb;
@@ -378,10 +376,8 @@ Shader::Point Shader::point_of(const Ray& ray, const Inside& inside, const Surfa
                 .roughness = std::max(material.roughness, least_roughness),
                 .blur = material.blur,
                 .inside = &inside};
-    if (hit.faded > 0) {
-        point.facing = formulas::facing_of_relief(hit.faded);
-        formulas::roughen_by_relief(hit.faded, point.specular, point.roughness, point.blur);
-    }
+    if (hit.faded > 0)
+        formulas::roughen_by_relief(hit.faded, point.facing, point.specular, point.roughness, point.blur);
     if (limits_.list || !(material.reflection > 0 || material.is_transparent())) point.blur = 0;
     if (point.blur > 0)
         point.facet = formulas::visible_facet(normal, point.to_viewer, point.blur, random.next());

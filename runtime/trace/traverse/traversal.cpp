@@ -314,11 +314,7 @@ Rgb Traversal::pattern_at_best(double size, SurfaceHit& hit) const {
     const SolidPattern& pattern = hit.material->pattern;
     const PatternValue at =
         pattern_at(pattern, size, 1 / model_.projection.pixels_per_unit({place, 0}), place);
-    if (pattern.bump != 0) {
-        if (glm::dot(hit.normal, ray_.direction) > 0) hit.normal = -hit.normal;
-        hit.normal = bumped(hit.normal, at.relief, pattern.bump, glm::normalize(ray_.direction));
-        hit.faded = pattern.bump * pattern.bump * at.faded;
-    }
+    if (pattern.bump != 0) show_relief(at, pattern.bump, glm::normalize(ray_.direction), hit);
     return pattern_colour(pattern, hit.material->rgb, at.value);
 }
 

@@ -11,25 +11,19 @@ namespace graftal {
 
 namespace {
 
-constexpr double seconds_of_application = 1.8e-8; ///< a map applied to a point, with the nearest cell
-constexpr double snapping_share = 0.8;            ///< of the work
-constexpr double near_enough = 0.998;             ///< agreement within a cell
+constexpr double snapping_share = 0.8; ///< of the work
+constexpr double near_enough = 0.998;  ///< agreement within a cell
 
 } // namespace
 
 MapFit::MapFit(const Target& target, PlaneMaps start, double seconds, std::uint64_t seed)
-    : target_(target), copies_(target, rules_), most_seconds_(seconds), seed_(seed) {
-    Draws draws(CounterRandom(seed), 0);
-    points_.inner = target.drawn(200, draws);
-    points_.outer = target.drawn(1000, draws);
-    few_points_.inner.assign(points_.inner.begin(), points_.inner.begin() + 100);
-    few_points_.outer = points_.outer;
+    : target_(target), copies_(target, rules_), most_seconds_(seconds), seed_(seed), points_(target, seed) {
     AttractorPainter painter(target);
     best_ = judged(painter, std::move(start), work_);
 }
 
 double MapFit::seconds() const {
-    return static_cast<double>(work_) * seconds_of_application;
+    return static_cast<double>(work_) * seconds_of_map;
 }
 
 double MapFit::fraction() const {
@@ -121,7 +115,7 @@ void MapFit::snap_maps(const Workers& workers) {
         const double reach_px = std::ldexp(4.0, static_cast<int>(i));
         for (const LevelFit& fit :
              {LevelFit{1, 10, reach_px}, LevelFit{1, 10, 4}, LevelFit{2, 8, 4}, LevelFit{4, 6, 3}})
-            work += refine(target_, fit.levels == 1 ? points_ : few_points_, fit, rules_, draws, maps);
+            work += refine(target_, points_.of(fit.levels), fit, rules_, draws, maps);
         systems[i] = judged(painter, std::move(maps), work);
         return work;
     });

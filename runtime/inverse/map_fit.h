@@ -50,7 +50,7 @@ class MapFit {
     CopySearch<PlaneMap> copies_;
     double most_seconds_;
     std::uint64_t seed_;
-    FitPoints<Vec2> points_, few_points_;
+    LevelPoints<PlaneMap> points_;
     std::vector<std::unique_ptr<AttractorPainter>> painters_; ///< one a worker
     System best_;
     int stalled_ = 0;    ///< batches of steps since the agreement was enough

@@ -25,6 +25,30 @@ template<typename Point> struct FitPoints {
     std::vector<Point> outer; ///< that images are to come near
 };
 
+/// The points of a search, by the levels of the words that images are compared by: words of many maps cost
+/// more, so that fewer points are inner ones.
+template<typename Map> class LevelPoints {
+  public:
+    using Points = FitPoints<typename Map::Point>;
+
+    LevelPoints(const TargetOf<Map>& target, std::uint64_t seed) {
+        Draws draws(CounterRandom(seed), 0);
+        one_.inner = target.drawn(200, draws);
+        one_.outer = target.drawn(1000, draws);
+        more_.inner.assign(one_.inner.begin(), one_.inner.begin() + 100);
+        more_.outer = one_.outer;
+    }
+
+    const Points& of(int levels) const { return levels == 1 ? one_ : more_; }
+
+  private:
+    Points one_, more_;
+};
+
+/// Processor seconds of a map that is applied to a point, with the nearest cell of the target: the unit of
+/// counted work.
+inline constexpr double seconds_of_map = 1.8e-8;
+
 /// Grows a map w until the target holds no larger image of itself thereabouts: Levenberg and Marquardt's
 /// method (Marquardt 1963) on mean |w p - T|^2 / tau^2 - mu log |det w|, for each length tau in turn. Returns
 /// the work: maps applied to points.

@@ -14,8 +14,6 @@ namespace graftal {
 
 namespace {
 
-constexpr double seconds_of_map = 1.8e-8; ///< a map applied to a point, with the nearest cell of the target
-
 /// The weight of the strict agreement. In space the cells are coarser, and have more neighbours that count.
 template<typename Map> constexpr double strict_weight = Map::dimensions == 2 ? 0.1 : 0.4;
 /// The strict agreement of a target that is found.
@@ -45,13 +43,8 @@ template<typename Map> class Search {
     Search(const TargetOf<Map>& target, const SearchOptionsOf<Map>& options, const Workers& workers,
            const CancelFlag& cancel, const std::function<void(const SearchProgress&)>& on_progress)
         : target_(target), options_(options), workers_(workers), cancel_(cancel), on_progress_(on_progress),
-          copies_(target, options.rules), painters_(static_cast<std::size_t>(workers.count())) {
-        Draws draws(CounterRandom(options.seed), 0);
-        points_.inner = target.drawn(200, draws);
-        points_.outer = target.drawn(1000, draws);
-        few_points_.inner.assign(points_.inner.begin(), points_.inner.begin() + 100);
-        few_points_.outer = points_.outer;
-    }
+          copies_(target, options.rules), points_(target, options.seed),
+          painters_(static_cast<std::size_t>(workers.count())) {}
 
     FoundSystemOf<Map> run() {
         keep({simplest()});
@@ -170,8 +163,8 @@ template<typename Map> class Search {
     /// The better of the system and its refinement by words of so many maps.
     void refine_to(Task& task, System& system, int levels, int iterations, double reach_px) const {
         Maps maps = system.maps;
-        task.work += refine(target_, levels == 1 ? points_ : few_points_, {levels, iterations, reach_px},
-                            options_.rules, task.draws, maps);
+        task.work += refine(target_, points_.of(levels), {levels, iterations, reach_px}, options_.rules,
+                            task.draws, maps);
         System refined = judge(task, std::move(maps));
         if (refined.value > system.value) system = std::move(refined);
     }
@@ -271,7 +264,7 @@ template<typename Map> class Search {
         for (const auto& [gain, copy] : copies_for(task, missed, 2)) {
             Maps maps = rest;
             maps.push_back(copy.map);
-            task.work += refine(target_, points_, {1, 10, 4}, options_.rules, task.draws, maps);
+            task.work += refine(target_, points_.of(1), {1, 10, 4}, options_.rules, task.draws, maps);
             System tried = judge(task, std::move(maps));
             if (tried.value > best.value) best = std::move(tried);
         }
@@ -341,7 +334,7 @@ template<typename Map> class Search {
     const CancelFlag& cancel_;
     const std::function<void(const SearchProgress&)>& on_progress_;
     CopySearch<Map> copies_;
-    FitPoints<Point> points_, few_points_;
+    LevelPoints<Map> points_;
     std::vector<std::unique_ptr<AttractorPainterOf<Map>>> painters_;
     std::vector<SelfCopy> pool_;
     std::vector<System> lines_; ///< best first

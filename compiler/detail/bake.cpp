@@ -280,7 +280,7 @@ class Baker {
 
     /// The side to which one of the two faces of a sheet looks; 0 if it is none.
     static Vec3 face_of_sheet(const Primitive& primitive, const Affine& place, bool wide) {
-        const auto sheet = sheet_of(primitive, place.linear, wide ? sheet_of_wide : SheetLimits());
+        const auto sheet = sheet_of(primitive, place.linear, wide);
         return sheet ? sheet->normal : Vec3(0.0);
     }
     /// Counts what the last leaf has brought. False where that is too much: triangles of pictures have

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "compiler/primitives/sheet.h"
+#include "compiler/primitives/solid.h"
 #include "compiler/primitives/tapered.h"
 #include "compiler/primitives/tessellate.h"
 #include "compiler/primitives/texture_space.h"
@@ -133,6 +133,7 @@ class Flattener {
             if (primitive == PrimitiveKind::cylinder || primitive == PrimitiveKind::cone ||
                 primitive == PrimitiveKind::frustum)
                 shape = static_cast<float>(top_radius(primitive));
+            if (encloses_volume(primitive)) flags |= NODE_SOLID;
             inner_radius = static_cast<float>(traits_of(primitive).inner_radius(primitive));
         } else {
             if (node.unending) flags |= NODE_UNENDING;
@@ -221,58 +222,6 @@ class Flattener {
     std::vector<std::uint32_t> meshes_; ///< by primitive
 };
 
-/// Flatness of the flattest map of parts within which a node lies, by node.
-std::vector<double> flattest_above(const DetailGraph& cut) {
-    struct Flat {
-        double flatness;
-        NodeId below;
-    };
-    std::vector<Flat> maps;
-    for (const DetailNode& node : cut.nodes)
-        for (const DetailEdge& edge : node.edges) {
-            if (edge.similarity || cut.nodes[edge.child].primitive) continue;
-            const Vec3 sigma = singular_values(edge.node_from_child.linear);
-            if (sigma.z < sigma.x) maps.push_back({sigma.z / sigma.x, edge.child});
-        }
-    std::ranges::sort(maps, {}, &Flat::flatness);
-    std::vector<double> flattest(cut.nodes.size(), 1);
-    std::vector<NodeId> open;
-    for (const Flat& map : maps) { // the flattest first: it holds for all that lies below
-        open.push_back(map.below);
-        while (!open.empty()) {
-            const NodeId id = open.back();
-            open.pop_back();
-            if (flattest[id] < 1) continue;
-            flattest[id] = map.flatness;
-            for (const DetailEdge& edge : cut.nodes[id].edges)
-                open.push_back(edge.child);
-        }
-    }
-    return flattest;
-}
-
-/// Whether some solid is as thin as a sheet (sheet.h), or may be, stretched by the parts that hold it.
-bool has_sheets(const DetailGraph& cut) {
-    const std::vector<double> flattest = flattest_above(cut);
-    for (std::size_t id = 0; id < cut.nodes.size(); ++id) {
-        const DetailNode& node = cut.nodes[id];
-        const SheetLimits limits{SheetLimits().of_mean / flattest[id],
-                                 SheetLimits().of_shorter / flattest[id]};
-        const auto is_sheet = [&](const DetailEdge& edge) {
-            const std::optional<Primitive>& primitive = cut.nodes[edge.child].primitive;
-            return (!edge.similarity || flattest[id] < 1) && primitive &&
-                   sheet_of(*primitive, edge.node_from_child.linear, limits);
-        };
-        if (std::ranges::any_of(node.edges, is_sheet) || std::ranges::any_of(node.stop_edges, is_sheet))
-            return true;
-        bool found = false;
-        if (node.cell && node.cell->flattest <= limits.of_mean)
-            node.cell->for_each([&](const CellEdge& edge) { found = found || is_sheet(edge); });
-        if (found) return true;
-    }
-    return false;
-}
-
 /// Parts of the model that no array of the kernel holds.
 std::string lack(const FlatRequest& request) {
     if (request.textures.of_ground) return "a picture on the ground";
@@ -281,10 +230,6 @@ std::string lack(const FlatRequest& request) {
         if (node.sealed) return "a singular map";
         if (node.is_combined()) return "an intersection or a difference";
     }
-    const DetailGraph& cut = request.prepared.cut;
-    const auto lets_light_through = [](const Material& material) { return material.translucency > 0; };
-    if (std::ranges::any_of(cut.materials, lets_light_through) && has_sheets(cut))
-        return "translucent solids as thin as a sheet";
     if (request.detail.error_px > SelfShadows::lit_as_px)
         return "parts culled that are larger than half a pixel";
     if (request.limits.list || request.view.lights.size() > MOST_LAMPS) return "a long list of lights";

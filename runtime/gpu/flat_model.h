@@ -29,11 +29,12 @@ struct FlatModel {
     std::vector<std::uint32_t> source; ///< by node: that of the prepared graph
     /// The kernel that a model gets knows only what the model has.
     struct Features {
-        bool stretched = false;  ///< some map of an object scales unevenly
-        bool even = true;        ///< none turns, mirrors or stretches
-        bool patterned = false;  ///< some material has a solid pattern
-        bool pictured = false;   ///< some material has a picture
-        bool glassy = false;     ///< some material lets light through
+        bool stretched = false;   ///< some map of an object scales unevenly
+        bool even = true;         ///< none turns, mirrors or stretches
+        bool patterned = false;   ///< some material has a solid pattern
+        bool pictured = false;    ///< some material has a picture
+        bool glassy = false;      ///< some material lets light through
+        bool translucent = false; ///< some material scatters light to its other side
         bool paired = false;     ///< the view shows parts of the root that are too small for single precision
         std::uint32_t kinds = 0; ///< of primitives that rays meet as they are: a bit each
     } features;

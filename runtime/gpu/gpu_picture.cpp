@@ -42,9 +42,9 @@ GpuPicture::GpuPicture(Gpu& gpu, ImageSize size, const Tile& window, const Sampl
 
 Status GpuPicture::prepare(const FlatModel& model, std::uint32_t frames) {
     const FlatModel::Features& has = model.features;
-    const std::array<std::uint32_t, 10> constants = {
-        frames,        samples_.aovs, has.stretched, has.even,  model.scene.widths.z > 0,
-        has.patterned, has.pictured,  has.glassy,    has.kinds, has.paired};
+    const std::array<std::uint32_t, 11> constants = {
+        frames,       samples_.aovs, has.stretched, has.even,   model.scene.widths.z > 0, has.patterned,
+        has.pictured, has.glassy,    has.kinds,     has.paired, has.translucent};
     Status status = gpu_.load(picture_spirv, film_binding + 1, sizeof(Job), constants, scene_binding);
     const std::span<const std::byte> scene = std::as_bytes(std::span(&model.scene, 1));
     for (const std::span<const std::byte> bytes :

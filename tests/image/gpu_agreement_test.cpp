@@ -134,7 +134,10 @@ TEST(GpuAgreement, Scenes) {
                                    "showpieces/maple_crown.inst",
                                    "showpieces/gosper_brass.inst",
                                    "showpieces/dragon_neon.inst",
-                                   "showpieces/winter_elm.inst"}) {
+                                   "showpieces/winter_elm.inst",
+                                   "shapes/materials.inst",
+                                   "light/window.inst",
+                                   "showpieces/lone_tree.inst"}) {
         if (left-- == 0) break;
         Session session(GRAFTAL_SOURCE_DIR "/scenes/" + std::string(path), disk_files());
         all += compare(path, session, seen_in({160, 120}));

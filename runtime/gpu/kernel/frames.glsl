@@ -140,6 +140,12 @@ mat3 inverse_of(vec3 row0, vec3 row1, vec3 row2) {
     return mat3(x, y, z) / dot(row0, x);
 }
 
+/// The linear part of parent_from_child of a part.
+mat3 inverse_of_part(uint part) {
+    const uint first = part * PART_SIZE;
+    return inverse_of(xyz_of(parts(first)), xyz_of(parts(first + 1u)), xyz_of(parts(first + 2u)));
+}
+
 /// The linear map to the world from within a part, by the rows of that into it. `at`: of the frame that holds it, of
 /// this scale.
 mat3 to_world(int at, float scale, vec3 row0, vec3 row1, vec3 row2) {

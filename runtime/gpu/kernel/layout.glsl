@@ -42,6 +42,7 @@
 #define NODE_PRIMITIVE (1u << 10)
 #define NODE_FAINT (1u << 11)  // a set without area
 #define NODE_WIDENS (1u << 12) // holds such a set, which is drawn wider than it is
+#define NODE_SOLID (1u << 13)  // of primitives: has an inside
 
 // Kinds of primitives, in the order of GRAFTAL_PRIMITIVE_KINDS; those that the kernel meets as meshes are one.
 #define KIND_TRIANGLE 0u

@@ -23,11 +23,12 @@ struct Path {
 struct Spot {
     vec3 position, normal, facet, rgb;
     uint material;
-    float faded; // Hit's
+    float faded; // Hit's, and the next, too
+    vec3 to_far_side;
 };
 
 struct Point {
-    vec3 position, normal, facet, to_viewer, rgb;
+    vec3 position, normal, facet, to_viewer, rgb, to_far_side;
     Material material;
     vec3 mirrored;
     float mirrors, body;
@@ -88,6 +89,7 @@ void meet_level_at(float t, float height, uint material, INOUT(Hit) hit) {
     hit.pattern_size = 1.0f;
     hit.faded = 0.0f;
     hit.tint = vec4(0.0f, 0.0f, 0.0f, 1.0f);
+    hit.to_far_side = vec3(0.0f);
 }
 
 /// A material, with what the relief does that a surface has lost.
@@ -137,6 +139,7 @@ Spot spot_of(Path path, Hit hit, INOUT(Stream) stream) {
     spot.rgb = hit.rgb;
     spot.material = hit.material;
     spot.faded = hit.faded;
+    spot.to_far_side = hit.to_far_side;
     const Material material = material_at(hit.material, hit.faded);
     if (is_blurred(material))
         spot.facet = visible_facet(spot.normal, -path.direction, material.blur, next_place(stream));
@@ -152,6 +155,7 @@ Point point_of(Path path, Spot spot) {
     point.facet = spot.facet;
     point.to_viewer = -path.direction;
     point.rgb = spot.rgb;
+    point.to_far_side = spot.to_far_side;
     point.material = material_at(spot.material, spot.faded);
     share_light(path.inside, point);
     return point;
@@ -161,6 +165,12 @@ Point point_of(Path path, Spot spot) {
 vec3 start_at(Point point, vec3 direction) {
     const float off = 4e-6f * largest_of(abs(point.position));
     return point.position + (dot(point.normal, direction) < 0.0f ? -off : off) * point.normal;
+}
+
+/// Likewise of light that the surface scatters, which leaves a sheet by its other face.
+vec3 scattered_from(Point point, vec3 direction) {
+    const vec3 place = start_at(point, direction);
+    return SHEETS && dot(point.normal, direction) < 0.0f ? place + point.to_far_side : place;
 }
 
 /// The share of a light that scatters to the viewer, without its colour. `cosine`: to the light, below 0 behind.
@@ -319,7 +329,7 @@ bool goes_on(INOUT(Path) path, Point point, float scattered, bool sky_later, INO
             path.weight *= point.body * diffuse * lit_from_all_sides(point.material.facing) / scatter_chance * point.rgb;
             const vec3 pole = chosen.y * diffuse < through ? -point.normal : point.normal;
             path.direction = cosine_direction(pole, next_place(stream));
-            path.origin = start_at(point, path.direction);
+            path.origin = scattered_from(point, path.direction);
             ++path.bounces;
             return is_finite(path.direction);
         }
@@ -391,6 +401,7 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
     spot.normal = spot.facet = spot.rgb = -d;
     spot.material = 0u;
     spot.faded = 0.0f;
+    spot.to_far_side = vec3(0.0f);
     float caught = 0.0f;
     uint source = sources;
     // The ray to a light.
@@ -480,7 +491,7 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
                 continue;
             }
             to_light = true;
-            from = start_at(point, to.direction);
+            from = scattered_from(point, to.direction);
             towards = to.direction;
             least = shadow_least;
             most = to.most;

@@ -12,6 +12,7 @@ struct Hit {
     float pattern_size; // of the part, for a pattern of its material; 0: shows none
     float faded;        // mean square slope, along one axis, of a relief too fine to be seen
     vec4 tint;          // in front of its own colour, with the share that is open to that
+    vec3 to_far_side;   // SurfaceHit's, where SHEETS
 };
 
 /// The point of a surface for its picture.
@@ -77,6 +78,7 @@ struct Meeting {
     vec3 normal;   // in its own frame
     Site site;     // likewise
     float scale;   // of the last frame
+    bool widened;  // it is drawn about as wide as a pixel all round
 };
 
 MET_MARKS
@@ -147,8 +149,7 @@ float pattern_size_of(Meeting meeting) {
 /// A point of a part in the frame that holds it.
 vec3 point_above(uint part, vec3 point) {
     const uint first = part * PART_SIZE;
-    const vec4 row0 = parts(first), row1 = parts(first + 1u), row2 = parts(first + 2u);
-    return inverse_of(xyz_of(row0), xyz_of(row1), xyz_of(row2)) * point + vec3(row0.w, row1.w, row2.w);
+    return inverse_of_part(part) * point + vec3(parts(first).w, parts(first + 1u).w, parts(first + 2u).w);
 }
 
 /// The limit's normal where the proxy of a node is met (limit_normal() of runtime/trace).
@@ -179,8 +180,24 @@ vec3 limit_normal(Meeting meeting) {
     return sum;
 }
 
+/// From the face of a sheet that was met to the other; 0 where it is none (Traversal::to_far_side_at_best()).
+vec3 to_far_side(Meeting meeting, vec3 direction) {
+    const uint node = bits_of(parts(meeting.part * PART_SIZE + 3u)).y * NODE_SIZE;
+    const bool is_solid = meeting.is_proxy || (bits_of(nodes(node + NODE_FACTS)).y & NODE_SOLID) != 0u;
+    if (!is_solid || (FAINTS && meeting.widened)) return vec3(0.0f);
+    const vec3 half_extents = meeting.is_proxy ? vec3(1.0f) : xyz_of(nodes(node + NODE_STANDIN));
+    mat3 map = meeting.is_proxy ? inverse_of(xyz_of(nodes(node + NODE_PROXY)), xyz_of(nodes(node + NODE_PROXY + 1u)),
+                                             xyz_of(nodes(node + NODE_PROXY + 2u)))
+                                : inverse_of_part(meeting.part);
+    for (int i = meeting.last; i > 0; --i)
+        map = inverse_of_part(met_part(i)) * map;
+    vec3 normal;
+    const float thickness = sheet_thickness(map[0], map[1], map[2], 2.0f * half_extents, false, normal);
+    return thickness < 0.0f ? vec3(0.0f) : (dot(normal, direction) < 0.0f ? -thickness : thickness) * normal;
+}
+
 /// Shows what the ray has met.
-void take_hit(Meeting meeting, INOUT(Hit) hit) {
+void take_hit(Meeting meeting, vec3 direction, INOUT(Hit) hit) {
     hit.is_level = false;
     look_along(meeting, hit);
     vec3 n = meeting.normal;
@@ -193,4 +210,7 @@ void take_hit(Meeting meeting, INOUT(Hit) hit) {
     }
     const float length2 = dot(n, n);
     hit.normal = length2 > 0.0f ? n * inversesqrt(length2) : vec3(0.0f, 1.0f, 0.0f);
+    hit.to_far_side = vec3(0.0f);
+    if (SHEETS && materials(hit.material * MATERIAL_SIZE + 2u).x > 0.0f)
+        hit.to_far_side = to_far_side(meeting, direction);
 }

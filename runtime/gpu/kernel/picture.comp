@@ -42,6 +42,7 @@ layout(constant_id = 6) const bool PICTURES = false;  // likewise
 layout(constant_id = 7) const bool GLASS = false;     // some material lets light through
 layout(constant_id = 8) const uint KINDS = 0x1ffu;    // of primitives: a bit each
 layout(constant_id = 9) const bool PAIRED = false; // places of rays have two floats for each number
+layout(constant_id = 10) const bool SHEETS = false; // some material is translucent
 const bool MESHES = (KINDS & (1u << KIND_MESH)) != 0u;
 
 layout(local_size_x = 64) in;
@@ -92,6 +93,7 @@ layout(push_constant) uniform Push { Job job; };
 
 #include "runtime/trace/shade/formulas.glsl"
 #include "compiler/light/formulas.glsl"
+#include "compiler/primitives/sheet.glsl"
 #include "runtime/gpu/kernel/primitives.glsl"
 #include "runtime/gpu/kernel/frames.glsl"
 #include "runtime/gpu/kernel/meeting.glsl"

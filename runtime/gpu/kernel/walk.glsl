@@ -95,6 +95,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 meeting.normal = normal;
                 meeting.site = site;
                 meeting.scale = kept(at - 1, direction).scale;
+                meeting.widened = false;
             }
             entry = NONE;
         } else if (entry != NONE) {
@@ -227,6 +228,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     meeting.normal = normal;
                     meeting.site = site;
                     meeting.scale = frame.scale;
+                    meeting.widened = widened;
                     if (is_proxy) met_marks[at + 1] = number | FRAME_CUT;
                 }
             }
@@ -268,6 +270,6 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
         }
     }
     steps += visits;
-    if (found && !any) take_hit(meeting, hit);
+    if (found && !any) take_hit(meeting, direction, hit);
     return found;
 }

@@ -230,8 +230,7 @@ Vec3 Traversal::to_far_side_at_best() const {
     if (best_.mesh_colour || best_.is_upright) return Vec3(0.0);
     const bool is_proxy = best_.proxy_node != no_edge;
     const Primitive primitive = is_proxy ? Primitive(PrimitiveKind::sphere) : primitive_at_best();
-    const auto sheet = sheet_of(primitive, best_.world_from_leaf.affine().linear,
-                                best_.in_world ? sheet_of_wide : SheetLimits());
+    const auto sheet = sheet_of(primitive, best_.world_from_leaf.affine().linear, best_.in_world);
     if (!sheet) return Vec3(0.0);
     return std::copysign(sheet->thickness, glm::dot(sheet->normal, ray_.direction)) * sheet->normal;
 }

@@ -41,7 +41,7 @@ inline constexpr float PI = 3.14159265358979f;
 inline constexpr float FAR = 1e30f;
 inline constexpr int MOST_FRAMES = 64, MOST_LATER = 5 * MOST_FRAMES;
 inline thread_local bool STRETCHED = false, EVEN = false, FAINTS = false, PATTERNS = false, PICTURES = false,
-                         GLASS = false, MESHES = false, PAIRED = false;
+                         GLASS = false, MESHES = false, PAIRED = false, SHEETS = false;
 inline thread_local std::uint32_t KINDS = 0;
 
 inline thread_local const FlatModel* model = nullptr;
@@ -59,6 +59,7 @@ inline void use(const FlatModel& flat) {
     PICTURES = has.pictured;
     GLASS = has.glassy;
     PAIRED = has.paired;
+    SHEETS = has.translucent;
     KINDS = has.kinds;
     MESHES = (KINDS & (1u << KIND_MESH)) != 0;
 }
@@ -124,6 +125,7 @@ namespace { // the texts say nothing of linkage; each uses those before it
 // clang-format off
 #include "runtime/trace/shade/formulas.glsl"
 #include "compiler/light/formulas.glsl"
+#include "compiler/primitives/sheet.glsl"
 #include "runtime/gpu/kernel/primitives.glsl"
 #include "runtime/gpu/kernel/frames.glsl"
 #include "runtime/gpu/kernel/meeting.glsl"

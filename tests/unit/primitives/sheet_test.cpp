@@ -26,7 +26,7 @@ TEST(Sheet, IsAThinSolid) {
         EXPECT_NEAR(ball->thickness / scale, 0.004, 1e-7);
         EXPECT_FALSE(sheet_of(PrimitiveKind::cylinder, turned({1, 0.06, 1}, scale)));
     }
-    EXPECT_TRUE(sheet_of(PrimitiveKind::cylinder, turned({1, 0.06, 1}), sheet_of_wide));
+    EXPECT_TRUE(sheet_of(PrimitiveKind::cylinder, turned({1, 0.06, 1}), true));
 }
 
 // A turtle's disc has the half axes 0.5, 0.5 and the thickness 0.001.

@@ -28,7 +28,7 @@ class GpuFaults : public CommandLine {
     /// `fault`: FUNCTION:N:RESULT, or "".
     RunResult draw(const std::string& fault, const std::string& words = "m.rifs") const {
         return shell("LD_LIBRARY_PATH=$PWD/../loader VULKAN_FAULT=" + fault +
-                     " timeout 100 \"$graftal\" render --engine gpu --device 0 " + words +
+                     " GALLIVM_PERF=nopt timeout 100 \"$graftal\" render --engine gpu --device 0 " + words +
                      " --size 16x12 --samples 2 -o a.png");
     }
 };
@@ -111,16 +111,17 @@ TEST_F(GpuFaults, OfPointsAreNotesToo) {
     EXPECT_EQ(points("vkCreateInstance:1:-9", "m.rifs --engine auto").status, 0);
 }
 
-TEST_F(GpuFaults, AMillionInstancesAreDrawnOrLeftToTheProcessors) {
+TEST_F(GpuFaults, ManyInstancesAreDrawnOrLeftToTheProcessors) {
     write("cells.inst",
-          "canonical object cell { cube scale: 0.3 }\nobject many { scatter: cell count: 1000000 "
+          "canonical object cell { cube scale: 0.3 }\nobject many { scatter: cell count: 300000 "
           "over: 0, 0, 1000, 1000 by: uniform }\n");
     const RunResult drawn = draw("", "cells.inst --plain-light");
     EXPECT_EQ(drawn.status, 0) << drawn.err;
     EXPECT_THAT(drawn.err, Not(HasSubstr("not the GPU")));
-    const RunResult left = draw("", "cells.inst --plain-light --memory 200M");
+    shell("sed -i s/300000/50000/ cells.inst");
+    const RunResult left = draw("", "cells.inst --plain-light --memory 20M");
     EXPECT_EQ(left.status, 0) << left.err;
-    EXPECT_THAT(left.err, HasSubstr("its kernel does not know 1000000 instances within 200 MiB"));
+    EXPECT_THAT(left.err, HasSubstr("its kernel does not know 50000 instances within 20 MiB"));
 }
 
 } // namespace

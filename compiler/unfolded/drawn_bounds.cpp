@@ -158,7 +158,7 @@ class Bounder {
         }
     }
 
-    /// By node, whether it may be cut because no level is left: not a part of an unending node that comes
+    /// Nodes, by number, that may be cut because no level is left: not parts of an unending node that come
     /// without a level, such as half of its maps. That node is cut in its place.
     std::vector<bool> where_levels_end() const {
         std::vector<bool> ends(cut_.nodes.size());

@@ -232,7 +232,7 @@ class Cells {
         return static_cast<std::uint32_t>(cells_.edges.size() - 1);
     }
 
-    /// What is left of a box that holds what an edge draws, when the pieces of that are looked at.
+    /// The part of a box about what an edge draws that the pieces of that leave.
     Box held(const FlatEdge& edge, const Affine& place, const Box& box) {
         if (box.empty() || graph_.nodes[edge.child].primitive != flat_none) return box;
         Box within;

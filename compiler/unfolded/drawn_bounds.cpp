@@ -76,9 +76,10 @@ class Bounder {
             about.parent_from_child = Affine::translate(box.centre()) * Affine::scale(0.5 * box.size());
             graph_.objects[id].instances.push_back(about);
         }
+        const std::vector<bool> ends = where_levels_end();
         for (NodeId id = 0; id < cut.nodes.size(); ++id) {
             const DetailNode& node = cut.nodes[id];
-            if (node.primitive || !node.stop_edges.empty() || !(node.cullable || node.unending)) continue;
+            if (node.primitive || !node.stop_edges.empty() || !(node.cullable || ends[id])) continue;
             Instance proxy;
             proxy.master = static_cast<ObjectId>(cut.nodes.size());
             proxy.parent_from_child = node.node_from_proxy;
@@ -155,6 +156,19 @@ class Bounder {
             whole.master = graph_.add(std::move(object));
             graph_.objects[id].instances.push_back(whole);
         }
+    }
+
+    /// Nodes, by number, that may be cut because no level is left: not parts of an unending node that come
+    /// without a level, such as half of its maps. That node is cut in its place.
+    std::vector<bool> where_levels_end() const {
+        std::vector<bool> ends(cut_.nodes.size());
+        ends[cut_.root] = cut_.nodes[cut_.root].unending;
+        for (const DetailNode& node : cut_.nodes)
+            for (const std::vector<DetailEdge>* edges : {&node.edges, &node.stop_edges})
+                for (const DetailEdge& edge : *edges)
+                    if (edge.levels > 0 || !node.unending || edges == &node.stop_edges)
+                        ends[edge.child] = ends[edge.child] || cut_.nodes[edge.child].unending;
+        return ends;
     }
 
     bool needs_object(const DetailEdge& edge) const {

@@ -23,29 +23,84 @@ bool is_endless(const FlatEdge& edge) {
     return !(edge.box[3] < flat_endless);
 }
 
-/// In the frame of the first edge's parent: within both what is known of the child and of its part.
-std::array<float, 6> box_of(const FlatEdge& first, const FlatEdge& second, const Affine& parent_from_middle) {
-    if (is_endless(second)) return second.box;
-    const Box part = transformed(parent_from_middle, {Vec3(second.box[0], second.box[1], second.box[2]),
-                                                      Vec3(second.box[3], second.box[4], second.box[5])});
-    std::array<float, 6> box = first.box;
-    for (int axis = 0; axis < 3; ++axis) {
-        constexpr float infinity = std::numeric_limits<float>::infinity();
-        const auto k = static_cast<std::size_t>(axis);
-        box[k] = std::max(box[k], std::nextafter(static_cast<float>(part.min[axis]), -infinity));
-        box[k + 3] = std::min(box[k + 3], std::nextafter(static_cast<float>(part.max[axis]), infinity));
-        if (box[k] > box[k + 3]) std::swap(box[k], box[k + 3]); // by rounding, of what is flat
-    }
-    return box;
+Box common(const Box& a, const Box& b) {
+    const Vec3 min = glm::max(a.min, b.min), max = glm::min(a.max, b.max);
+    return {glm::min(min, max), glm::max(min, max)}; // by rounding, of what is flat
 }
+
+/// Boxes that hold together all that a node draws, in its frame. A part that is turned is held closer by the
+/// boxes of many small pieces than by that of its one box.
+class Covers {
+  public:
+    explicit Covers(const FlatGraph& graph) : graph_(graph), covers_(graph.nodes.size()) {}
+
+    const std::vector<Box>& of(std::uint32_t id) {
+        if (covers_[id].empty()) covers_[id] = cover(id);
+        return covers_[id];
+    }
+
+  private:
+    static constexpr std::size_t most_pieces = 64;
+    static constexpr int most_splits = 64;
+
+    struct Piece {
+        Box box;
+        Affine place;
+        std::uint32_t node = flat_none; ///< that may be split
+        double size() const { return node == flat_none ? 0 : glm::length(box.size()); }
+    };
+
+    /// Puts those of a node's parts into the heap.
+    void split(const Piece& whole, std::vector<Piece>& pieces) const {
+        const FlatNode& node = graph_.nodes[whole.node];
+        const auto add = [&](const Box& box, const Affine& place, std::uint32_t child) {
+            pieces.push_back({common(transformed(whole.place, box), whole.box), place, child});
+            std::ranges::push_heap(pieces, {}, &Piece::size);
+        };
+        for (std::uint32_t i = 0; i < node.edge_count + node.stop_edge_count; ++i) {
+            const FlatEdge& edge = graph_.edges[node.first_edge + i];
+            const bool splits = graph_.nodes[edge.child].primitive == flat_none;
+            add(box_of(edge), whole.place * parent_from_child(edge), splits ? edge.child : flat_none);
+        }
+        if (node.stop_edge_count > 0 || !(node.unending || node.cut_detail > 0)) return;
+        Affine proxy;
+        for (std::size_t i = 0; i < 12; ++i)
+            (i < 9 ? proxy.linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]
+                   : proxy.translation[static_cast<int>(i - 9)]) = node.frame_from_proxy[i];
+        add(transformed(proxy, {Vec3(-1), Vec3(1)}), {}, flat_none);
+    }
+
+    std::vector<Box> cover(std::uint32_t id) const {
+        std::vector<Piece> pieces;
+        constexpr double far = flat_endless;
+        split({{Vec3(-far), Vec3(far)}, {}, id}, pieces);
+        for (int i = 0; i < most_splits && pieces.size() < most_pieces; ++i) {
+            if (!(pieces.front().size() > 0)) break;
+            std::ranges::pop_heap(pieces, {}, &Piece::size);
+            const Piece largest = pieces.back();
+            pieces.pop_back();
+            split(largest, pieces);
+        }
+        std::vector<Box> boxes;
+        for (const Piece& piece : pieces)
+            boxes.push_back(piece.box);
+        return boxes;
+    }
+
+    const FlatGraph& graph_;
+    std::vector<std::vector<Box>> covers_;
+};
 
 class Cells {
   public:
     explicit Cells(const FlatGraph& graph) : graph_(graph) {}
 
     FlatCells run() {
-        for (const FlatEdge& edge : graph_.edges)
+        for (const FlatEdge& edge : graph_.edges) {
             cells_.edges.push_back({edge});
+            if (!is_endless(edge))
+                cells_.edges.back().edge.box = rounded(held(edge, parent_from_child(edge), box_of(edge)));
+        }
         cells_.deep.resize(graph_.nodes.size());
         for (const FlatNode& node : graph_.nodes) {
             std::vector<std::uint32_t>& own = cells_.shallow.emplace_back(node.edge_count);
@@ -170,18 +225,45 @@ class Cells {
             edge.child_from_parent[i] = FloatPair(linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
         for (std::size_t i = 0; i < 3; ++i)
             edge.origin[i] = FloatPair(whole.translation[static_cast<int>(i)]);
-        edge.box = box_of(first, second, parent_from_middle);
+        if (!is_endless(second))
+            edge.box = rounded(
+                held(second, whole, common(box_of(first), transformed(parent_from_middle, box_of(second)))));
         cells_.edges.push_back({edge, before, last});
         return static_cast<std::uint32_t>(cells_.edges.size() - 1);
     }
 
+    /// The part of a box about what an edge draws that the pieces of that leave.
+    Box held(const FlatEdge& edge, const Affine& place, const Box& box) {
+        if (box.empty() || graph_.nodes[edge.child].primitive != flat_none) return box;
+        Box within;
+        for (const Box& piece : covers_.of(edge.child))
+            within.include(transformed(place, piece));
+        return within.empty() ? box : common(box, within);
+    }
+
+    static std::array<float, 6> rounded(const Box& box) {
+        std::array<float, 6> result{};
+        for (int axis = 0; axis < 3; ++axis) {
+            constexpr float infinity = std::numeric_limits<float>::infinity();
+            const auto k = static_cast<std::size_t>(axis);
+            result[k] = std::nextafter(static_cast<float>(box.min[axis]), -infinity);
+            result[k + 3] = std::nextafter(static_cast<float>(box.max[axis]), infinity);
+        }
+        return result;
+    }
+
     const FlatGraph& graph_;
+    Covers covers_{graph_};
     FlatCells cells_;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> joined_; ///< with what is several edges
     std::size_t added_ = 0;
 };
 
 } // namespace
+
+Box box_of(const FlatEdge& edge) {
+    return {{edge.box[0], edge.box[1], edge.box[2]}, {edge.box[3], edge.box[4], edge.box[5]}};
+}
 
 bool is_similarity(const FlatEdge& edge) {
     const Mat3 linear = double(edge.stretch) * child_from_parent(edge),

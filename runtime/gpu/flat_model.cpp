@@ -39,10 +39,6 @@ std::uint32_t material_number(std::uint32_t material) {
     return material == flat_none ? NONE : material + 1;
 }
 
-Box box_of(const FlatEdge& edge) {
-    return {{edge.box[0], edge.box[1], edge.box[2]}, {edge.box[3], edge.box[4], edge.box[5]}};
-}
-
 /// Whether rays keep their direction in the child's frame.
 bool keeps_directions(const FlatEdge& edge) {
     for (std::size_t i = 0; i < 9; ++i)

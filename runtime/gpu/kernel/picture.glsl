@@ -76,15 +76,17 @@ Stream stream_of_pixel(uvec2 pixel, uvec2 sequence, uint i) {
 
 /// Adds samples `first` to `first + count` to a pixel. `film`: the weighted sum of its light and the weights;
 /// then the mean and the sum of squares of the luminance, and the steps and the number of rays in
-/// thousands. Steps without end: some part had no room.
+/// thousands. Steps without end: some part had no room. It is read again for each sample: what a ray keeps takes
+/// registers.
 void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint count, uint lattice) {
-    vec4 sum = film[SUMS_A_PIXEL * at], noise = film[SUMS_A_PIXEL * at + 1u];
     rays = 0u;
     steps = 0u;
     lost = 0u;
     for (uint i = first; i < first + count; ++i) {
-        if (lattice == 0u && sum.w > 0.0f && uint(sum.w) % 16u == 0u &&
-            error_255(sum.w, noise.x, noise.y) < scene.limits.z)
+        const vec4 before = film[SUMS_A_PIXEL * at + 1u];
+        const float weights = film[SUMS_A_PIXEL * at].w;
+        if (lattice == 0u && weights > 0.0f && uint(weights) % 16u == 0u &&
+            error_255(weights, before.x, before.y) < scene.limits.z)
             break;
         Stream stream = stream_of_pixel(pixel, sequence, i);
         const Place place = place_of_sample(i, lattice, stream);
@@ -92,24 +94,22 @@ void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, ui
         vec3 d;
         camera_ray(vec2(float(pixel.x), float(pixel.y)) + place.in_pixel, size, stream, o, d);
         const vec3 light = radiance(o, d, stream);
-        sum += vec4(place.weight * light, place.weight);
+        const vec4 sum = film[SUMS_A_PIXEL * at] + vec4(place.weight * light, place.weight);
+        vec4 noise = film[SUMS_A_PIXEL * at + 1u];
         const float luminance = dot(light, vec3(0.2126f, 0.7152f, 0.0722f));
-        const float before = luminance - noise.x;
-        noise.x += before / sum.w;
-        noise.y += before * (luminance - noise.x);
+        const float away = luminance - noise.x;
+        noise.x += away / sum.w;
+        noise.y += away * (luminance - noise.x);
+        film[SUMS_A_PIXEL * at] = sum;
+        film[SUMS_A_PIXEL * at + 1u] = noise;
     }
-    noise.z += lost > 0u ? FAR : 1e-3f * float(steps);
-    noise.w += 1e-3f * float(rays);
-    film[SUMS_A_PIXEL * at] = sum;
-    film[SUMS_A_PIXEL * at + 1u] = noise;
+    film[SUMS_A_PIXEL * at + 1u] += vec4(0.0f, 0.0f, lost > 0u ? FAR : 1e-3f * float(steps), 1e-3f * float(rays));
 }
 
 /// Likewise, for AovSum of runtime/trace. `film`: the weights that meet a surface, their depths, and how far from the
 /// middle the nearest sample is; normals; albedos; that sample's node, as two halves, its levels, and parts that had no
 /// room.
 void add_aovs(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint count, uint lattice) {
-    vec4 sum = film[AOVS_A_PIXEL * at], normals = film[AOVS_A_PIXEL * at + 1u],
-         albedos = film[AOVS_A_PIXEL * at + 2u], nearest = film[AOVS_A_PIXEL * at + 3u];
     for (uint i = first; i < first + count; ++i) {
         Stream stream = stream_of_pixel(pixel, sequence, i);
         const Place place = place_of_sample(i, lattice, stream);
@@ -118,21 +118,22 @@ void add_aovs(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint 
         camera_ray(vec2(float(pixel.x), float(pixel.y)) + place.in_pixel, size, stream, o, d);
         Hit hit;
         const bool found = meet_first(o, d, 0.0f, scene.limits.x, false, hit);
+        vec4 sum = film[AOVS_A_PIXEL * at];
         const vec2 off = place.in_pixel - vec2(0.5f);
         if (i == 0u || dot(off, off) < sum.z) {
             const uint node = found ? hit.node : NONE;
             sum.z = dot(off, off);
-            nearest = vec4(float(node >> 16), float(node & 0xffffu), found ? float(hit.levels) : 0.0f, nearest.w);
+            film[AOVS_A_PIXEL * at + 3u] = vec4(float(node >> 16), float(node & 0xffffu),
+                                                found ? float(hit.levels) : 0.0f, film[AOVS_A_PIXEL * at + 3u].w);
         }
+        if (found) {
+            sum.x += place.weight;
+            sum.y += place.weight * dot(o + hit.t * d, xyz_of(scene.direction));
+        }
+        film[AOVS_A_PIXEL * at] = sum;
         if (!found) continue;
-        sum.x += place.weight;
-        sum.y += place.weight * dot(o + hit.t * d, xyz_of(scene.direction));
-        normals += vec4((dot(hit.normal, d) > 0.0f ? -place.weight : place.weight) * hit.normal, 0.0f);
-        albedos += vec4(place.weight * hit.rgb, 0.0f);
+        film[AOVS_A_PIXEL * at + 1u] += vec4((dot(hit.normal, d) > 0.0f ? -place.weight : place.weight) * hit.normal, 0.0f);
+        film[AOVS_A_PIXEL * at + 2u] += vec4(place.weight * hit.rgb, 0.0f);
     }
-    nearest.w += float(lost);
-    film[AOVS_A_PIXEL * at] = sum;
-    film[AOVS_A_PIXEL * at + 1u] = normals;
-    film[AOVS_A_PIXEL * at + 2u] = albedos;
-    film[AOVS_A_PIXEL * at + 3u] = nearest;
+    film[AOVS_A_PIXEL * at + 3u] += vec4(0.0f, 0.0f, 0.0f, float(lost));
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/graph/unfold.h"
+#include "compiler/passes/split_into_halves.h"
 #include "tests/unit/unfolded/models.h"
 
 namespace graftal {
@@ -106,6 +107,38 @@ TEST(FlatGraph, HoldsWhatEachNodeDrawsInItsOwnCube) {
             EXPECT_GE(edge.box[k], -1.0001f);
             EXPECT_LE(edge.box[k + 3], 1.0001f);
         }
+}
+
+/// Half of a set's maps is never cut, and what would stand for it is no part of its box.
+TEST(FlatGraph, HalvesHaveNoLargerBoxesThanTheWhole) {
+    Graph graph = test::empty_graph();
+    const ObjectId cube = graph.primitive(PrimitiveKind::cube),
+                   sponge = graph.add({"sponge", {}, {}, {}, {}});
+    for (int i = 0; i < 27; ++i) {
+        const Vec3 at(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        if (glm::dot(at, at) > 1.5)
+            test::place(graph, sponge, sponge,
+                        Affine::translate(2.0 / 3 * at) * Affine::scale(Vec3(1.0 / 3)));
+    }
+    graph.objects[sponge].terminal = Instance{cube, Affine::scale(Vec3(1)), {}, {}, {}};
+    test::place(graph, graph.root, sponge, {});
+    const Components components = strong_components(graph);
+    graph = split_into_halves(graph, bound_objects(graph, components, decide_contraction(graph, components)))
+                .graph;
+    const std::shared_ptr<const PreparedGraph> prepared = test::prepared(graph, {});
+    const DetailGraph cut = layered(prepared->cut, prepared->root_steps).cut;
+    ASSERT_GT(cut.nodes.size(), 3u);
+    const std::vector<Box> boxes = drawn_bounds(cut).node;
+    std::size_t halves = 0;
+    for (NodeId id = 0; id < cut.nodes.size(); ++id) {
+        if (cut.nodes[id].cullable || cut.nodes[id].primitive) continue;
+        ++halves;
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_GE(boxes[id].min[axis], -1.0001) << cut.nodes[id].name;
+            EXPECT_LE(boxes[id].max[axis], 1.0001) << cut.nodes[id].name;
+        }
+    }
+    EXPECT_EQ(halves, 2u);
 }
 
 TEST(FlatGraph, CyclesStayCycles) {

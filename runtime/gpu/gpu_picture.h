@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 
@@ -26,8 +27,8 @@ class GpuPicture {
 
     /// Makes the kernel, and brings the model to the device. `frames`: objects in each other that rays have
     /// room for. More of them take more of the device's memory, and so its time.
-    Status prepare(const FlatModel& model, std::uint32_t frames = usual_frames);
-    static constexpr std::uint32_t usual_frames = 64, most_frames = 256;
+    Status prepare(const FlatModel& model, std::uint32_t frames = rooms.front());
+    static constexpr std::array<std::uint32_t, 3> rooms = {64, 256, 2048}; ///< of frames, to be tried in turn
 
     /// Adds samples until each pixel has `count`, or is calm. `goes_on` is asked between pieces, which take
     /// about 30 ms, with the share that is done; after it says false the status is a failure: "interrupted".

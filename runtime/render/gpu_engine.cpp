@@ -56,9 +56,11 @@ class GpuDrawing {
 
     Status draw(const FlatModel& model, Gpu& gpu) {
         film_.begin({window_, picture_.channels, view_, prepared_.prepared->cut});
+        Status status;
         bool fits = false;
-        const Status status = draw(model, gpu, GpuPicture::usual_frames, fits);
-        return fits ? status : draw(model, gpu, GpuPicture::most_frames, fits);
+        for (const std::uint32_t frames : GpuPicture::rooms)
+            if (!fits) status = draw(model, gpu, frames, fits);
+        return status;
     }
 
     /// Whether some picture has appeared.

@@ -70,7 +70,7 @@ Agreement compare(const std::string& name, Session& session, const StageOptions&
     const Tile window{0, 0, model.view.size.width, model.view.size.height};
     AovPicture by_gpu, by_native(window.pixels());
     bool lost = true;
-    for (const std::uint32_t frames : {GpuPicture::usual_frames, GpuPicture::most_frames}) {
+    for (const std::uint32_t frames : GpuPicture::rooms) {
         if (!lost) break;
         GpuPicture picture(*gpu, model.view.size, window, {.aovs = true});
         EXPECT_TRUE(picture.prepare(*flat, frames).ok());

@@ -33,9 +33,17 @@ FORMULA real haze_column(real s) {
     return s > REAL(0) ? atan(s) : s;
 }
 
-/// The share of what lies behind that is seen through haze (Haze::left_after()). `begin`, `end`: where the way
-/// starts and ends, in heights above the base; 0 where the haze is even.
-FORMULA real left_after_haze(real begin, real end, real length, real distance) {
+/// A ray's way through haze.
+struct HazeWay {
+    real begin;    // its height above the base, in heights of the haze; 0 where that is even
+    real rise;     // of a length, likewise 0
+    real height;   // Haze's, and the next
+    real distance;
+};
+
+/// The share of what lies behind that is seen through haze (Haze::left_after()).
+FORMULA real left_after_haze(HazeWay way, real length) {
+    const real begin = way.begin, end = begin + length * way.rise / way.height;
     real density = REAL(1);
     if (begin > REAL(0) || end > REAL(0)) {
         const real level = REAL(1e-4); // POV-Ray's: below, the quotient is lost in rounding
@@ -44,5 +52,20 @@ FORMULA real left_after_haze(real begin, real end, real length, real distance) {
         else if (begin > REAL(0))
             density = REAL(1) / (REAL(1) + begin * begin);
     }
-    return exp(-length * density / distance);
+    return exp(-length * density / way.distance);
+}
+
+/// The length of which the haze's light makes up this share of that of all `length` (Haze::length_of_share()).
+FORMULA real length_of_haze_share(HazeWay way, real length, real share) {
+    const real wanted = share * (REAL(1) - left_after_haze(way, length));
+    real near = REAL(0), far = length;
+    for (int halving = 0; halving < 50; ++halving) {
+        const real middle = REAL(0.5) * (near + far);
+        if (!(middle > near && middle < far)) break;
+        if (REAL(1) - left_after_haze(way, middle) < wanted)
+            near = middle;
+        else
+            far = middle;
+    }
+    return far;
 }

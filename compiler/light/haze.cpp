@@ -8,21 +8,23 @@
 
 namespace graftal {
 
+namespace {
+
+/// Both of its heights are 0 where the haze is even.
+formulas::HazeWay way_in(const Haze& haze, Vec3 from, Vec3 direction) {
+    return {(from.y - haze.base) / haze.height, direction.y, haze.height, haze.distance};
+}
+
+} // namespace
+
 double Haze::left_after(Vec3 from, Vec3 direction, double length) const {
-    const double begin = (from.y - base) / height; // 0 where it is even
-    return formulas::left_after_haze(begin, begin + length * direction.y / height, length, distance);
+    return formulas::left_after_haze(way_in(*this, from, direction), length);
 }
 
 double Haze::length_of_share(Vec3 from, Vec3 direction, double length, double share) const {
+    if (!is_even()) return formulas::length_of_haze_share(way_in(*this, from, direction), length, share);
     const double wanted = share * (1 - left_after(from, direction, length));
-    if (is_even()) return std::min(length, -distance * std::log1p(-wanted));
-    double near = 0, far = length;
-    constexpr int halvings = 50;
-    for (int i = 0; i < halvings; ++i) {
-        const double middle = 0.5 * (near + far);
-        (1 - left_after(from, direction, middle) < wanted ? near : far) = middle;
-    }
-    return far;
+    return std::min(length, -distance * std::log1p(-wanted));
 }
 
 double Haze::scattered(Vec3 direction, Vec3 to_sun) {

@@ -129,7 +129,7 @@ class Rerooter {
             if (!is_sound(*view.haze)) view.haze.reset();
         }
         if (!view.ground) return;
-        scale_absorption(view.ground->material);
+        scale_lengths(view.ground->material);
         const double height = request_.zoom->times(view.ground->height - world_focus.y);
         if (std::abs(height) <= farthest_ground())
             view.ground->height = height;
@@ -137,10 +137,14 @@ class Rerooter {
             view.ground.reset();
     }
 
-    /// Its length is one of the world, whose measure an object's own frame does not know.
-    void scale_absorption(Material& material) const {
+    /// Scales those of the world, whose measure an object's own frame does not know.
+    void scale_lengths(Material& material) const {
         material.absorption =
             request_.zoom ? std::min(request_.zoom->times(material.absorption), largest_size) : 0;
+        if (!request_.zoom) return;
+        for (PatternLayer& layer : material.pattern.layers)
+            if (layer.of_world)
+                layer.scale = std::clamp(request_.zoom->times(layer.scale), least_size, largest_size);
     }
 
     /// Beyond these lengths nothing of it is seen.
@@ -216,7 +220,7 @@ class Rerooter {
             // No longer level, it is a plane like others.
             const Affine world_from_plane = Affine::translate({0, view.ground->height, 0});
             ground_ = {*picture_from_root * world_from_plane, view.ground->material};
-            scale_absorption(ground_->material);
+            scale_lengths(ground_->material);
         }
         view.ground.reset();
     }
@@ -349,7 +353,7 @@ class Rerooter {
         Graph& graph = result_.graph;
         graph = model_.graph;
         for (Material& material : graph.materials)
-            scale_absorption(material);
+            scale_lengths(material);
         result_.bounds = model_.bounds;
         Object root;
         root.name = free_name("surroundings", graph.objects);

@@ -46,8 +46,9 @@ std::uint32_t add_pattern(const SolidPattern& pattern, FlatModel& flat) {
     add({static_cast<double>(pattern.layers.size()), pattern.bump * relief_depth});
     add({pattern.low.r, pattern.low.g, pattern.low.b, pattern.high.r, pattern.high.g, pattern.high.b});
     for (const PatternLayer& layer : pattern.layers)
-        add({static_cast<double>(layer.kind), static_cast<double>(layer.octaves), layer.warp, layer.scale,
-             layer.of_world ? 1.0 : 0.0, layer.stretch.x, layer.stretch.y, layer.stretch.z, layer.share});
+        add({static_cast<double>(layer.kind), static_cast<double>(layer.octaves), layer.warp,
+             flat_length(layer.scale), layer.of_world ? 1.0 : 0.0, layer.stretch.x, layer.stretch.y,
+             layer.stretch.z, layer.share});
     return first;
 }
 
@@ -71,7 +72,7 @@ void add_material(const Material& material, const Texture* texture, FlatModel& f
     const std::uint32_t pattern = material.pattern ? add_pattern(material.pattern, flat) : NONE;
     flat.features.patterned = flat.features.patterned || material.pattern;
     flat.materials.emplace_back(material.filter, material.ior, material.blur, flat_bits(pattern));
-    flat.materials.push_back(flat_four(interior.absorbed, interior.ior));
+    flat.materials.push_back(flat_four(glm::min(interior.absorbed, Rgb(1e30)), interior.ior));
     if (texture)
         flat.materials.emplace_back(flat_bits(add_texture(*texture, flat)),
                                     static_cast<float>(texture->width), static_cast<float>(texture->height),
@@ -89,15 +90,14 @@ void add_lamps(const View& view, Scene& scene) {
     constexpr double least_light = 1e-10;
     std::uint32_t count = 0;
     const auto add = [&](const Light& light, bool area) {
-        if (count == MOST_LAMPS || std::max({light.rgb.r, light.rgb.g, light.rgb.b}) < least_light) return;
-        Lamp& lamp = scene.lamps[count++];
+        Lamp& lamp = scene.lamps[count];
         const Vec3 at = light.sun ? glm::normalize(light.location) : light.location - view.camera.location;
         lamp.at = flat_four(at, light.sun ? 1 : 0);
         lamp.rgb = flat_four(light.rgb, light.shadowless ? 1 : 0);
         if (!area) return;
         Vec3 a = light.a, b = light.b;
         bool round = light.round;
-        if (light.is_disc()) {
+        if (light.sun) {
             const AxesAcross axes = axes_across(at);
             const double radius = std::tan(0.5 * light.angle_deg * std::numbers::pi / 180);
             a = radius * axes.a;
@@ -110,8 +110,13 @@ void add_lamps(const View& view, Scene& scene) {
     // Points come first, as in the shader: random numbers are taken in the order of the areas.
     for (const bool area : {false, true})
         for (const Light& light : view.lights)
-            if ((light.is_area() || light.is_disc()) == area) add(light, area);
+            if ((light.is_area() || light.is_disc()) == area && count < MOST_LAMPS &&
+                std::max({light.rgb.r, light.rgb.g, light.rgb.b}) >= least_light) {
+                add(light, area);
+                ++count;
+            }
     scene.counts.x = count;
+    if (const Light* const sun = view.sun_of_haze()) add(*sun, true);
 }
 
 void add_sky(const View& view, FlatModel& flat) {
@@ -237,8 +242,9 @@ void add_light(const FlatRequest& request, FlatModel& flat) {
         scene.catcher = flat_four(view.catcher->centre - view.camera.location, view.catcher->radius);
     }
     if (view.haze) {
-        scene.haze = flat_four({view.haze->distance, view.haze->base - view.camera.location.y,
-                                view.haze->is_even() ? 0 : view.haze->height});
+        scene.haze = flat_four({flat_length(view.haze->distance), view.haze->base - view.camera.location.y,
+                                view.haze->is_even() ? 0 : flat_length(view.haze->height)},
+                               view.sun_of_haze() ? view.haze->sun : 0);
         scene.haze_rgb = flat_four(view.haze->rgb);
     }
     scene.ambient.w = static_cast<float>(view.film.exposure);

@@ -221,7 +221,6 @@ class Flattener {
 /// Parts of the model that no array of the kernel holds.
 std::string lack(const FlatRequest& request) {
     if (request.textures.of_ground) return "a picture on the ground";
-    if (request.view.sun_of_haze()) return "shafts of light in haze";
     for (const DetailNode& node : request.prepared.cut.nodes) {
         if (node.sealed) return "a singular map";
         if (node.is_combined()) return "an intersection or a difference";

@@ -86,7 +86,7 @@ struct Scene {
     vec4 picture_from_world[3];                    // columns; w of the first: width, of the second: height
     vec4 ground;                                   // height, 1 if there is one, transparent
     vec4 catcher;                                  // centre, radius; radius 0: none
-    vec4 haze;     // distance (0: none), base, height (0: even all over)
+    vec4 haze;     // distance (0: none), base, height (0: even all over), the sun's share
     vec4 haze_rgb; //
     vec4 ambient;  // light; w: exposure
     vec4 limits;   // farthest, least weight, noise in 255ths
@@ -95,7 +95,7 @@ struct Scene {
     uvec4 looks;    // 1 for a soft film
     uvec4 tables; // the pixel filter's in texels[]; 1 if some texel of a surface is clear; patterns' waves in texels[]
     vec4 eye;     // in the world of the model
-    Lamp lamps[MOST_LAMPS];
+    Lamp lamps[MOST_LAMPS + 1u]; // after the last the sun that haze shows in shafts
 };
 
 // Entries of the pixel filter's table, less one.

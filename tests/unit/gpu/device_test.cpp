@@ -34,6 +34,7 @@ View lit_view(const TraceModel& model) {
     view.sky_light = SkyLight{.zenith = Rgb(0.3, 0.4, 0.8), .horizon = Rgb(0.8), .below = Rgb(0.2)};
     view.sky_light->bounces = 2;
     view.shows_sky_light = true;
+    view.haze = Haze{.distance = 20, .height = 2, .sun = 0.6};
     return view;
 }
 

@@ -132,6 +132,20 @@ TEST(Reroot, AbsorptionKeepsItsLengthInTheWorld) {
     EXPECT_EQ(try_zoom(graph, "up.up", "").rerooted->graph.materials[0].absorption, 0) << "of no known size";
 }
 
+TEST(Reroot, PatternsOfTheWorldKeepTheirScaleThere) {
+    Graph graph = corner_maps(triangle, {});
+    Material stone{.name = "stone"};
+    stone.pattern.layers = {{.scale = 3, .of_world = true}, {.scale = 3}};
+    graph.materials = {stone};
+    const auto at = [&](const std::string& address, const std::string& zoom, std::size_t layer) {
+        return try_zoom(graph, address, zoom).rerooted->graph.materials[0].pattern.layers[layer].scale;
+    };
+    EXPECT_EQ(at("(up)*", "2^4", 0), 48);
+    EXPECT_EQ(at("(up)*", "2^4", 1), 3) << "those of parts are as large as these";
+    EXPECT_EQ(at("(up)*", "1e200", 0), 1e100) << "one colour";
+    EXPECT_EQ(at("up.up", "", 0), 3) << "of no known size";
+}
+
 TEST(Reroot, TheSamePictureAtEveryPeriod) {
     struct Case {
         const char* at;

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "compiler/analysis/counts.h"
-#include "compiler/editing/names.h"
+#include "compiler/editing/names/names.h"
 #include "compiler/editing/place.h"
 #include "compiler/lower/named_materials.h"
 #include "compiler/support/number.h"

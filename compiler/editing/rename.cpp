@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/editing/names.h"
+#include "compiler/editing/names/names.h"
 #include "compiler/lower/lower_transform.h"
 #include "compiler/lsys/parse/scanner.h"
 #include "compiler/lsys/parse/turtle_command.h"

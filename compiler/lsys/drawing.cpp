@@ -8,12 +8,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include "compiler/lsys/compose/composer.h"
 #include "compiler/lsys/compose/limit.h"
-#include "compiler/lsys/compose/sizes.h"
+#include "compiler/lsys/compose/rounding.h"
 #include "compiler/lsys/derive/deriver.h"
 #include "compiler/lsys/derive/folded_word.h"
 #include "compiler/lsys/derive/stream.h"
@@ -25,8 +23,6 @@
 namespace graftal {
 
 namespace {
-
-constexpr Vec3 up(0, 1, 0);
 
 // Random models: the most drift of their parts, and the numbers of their variants.
 constexpr double most_drift = 0.05;
@@ -44,13 +40,6 @@ constexpr std::size_t most_exact_parts = 100'000;
 /// many. Random models may have as many for each sixteen variants.
 constexpr std::size_t most_sized_parts = 16'384;
 constexpr std::size_t most_resized_parts = 4'096;
-
-/// Differences that are ignored when parts are looked up.
-struct Rounding {
-    bool resizes = false; ///< modules that differ in their size only
-    double size_step = 0;
-    double snap_angle_deg = 0;
-};
 
 /// Composing ends with more parts than this if few of them serve twice.
 constexpr std::size_t most_single_parts = 16'384;
@@ -74,9 +63,8 @@ class Drawer {
           rewriter_(grammar, diagnostics, options.seed, options.meter,
                     instructions_a_module * options.max_modules),
           sizes_(grammar, options.inner), width_(stated_width(grammar)),
-          width_is_open_(has_open_width(grammar)) {
-        add_roundings();
-    }
+          width_is_open_(has_open_width(grammar)), has_sizes_(has_sizes(grammar, sizes_)),
+          uses_directions_(uses_directions(grammar)), roundings_(roundings_of(grammar, sizes_)) {}
 
     std::optional<LsysDrawing> draw(Graph& graph, ObjectPool& pool) {
         if (!choose_palette(graph)) return std::nullopt;
@@ -124,11 +112,11 @@ class Drawer {
             return sixteens * (rounding.resizes ? most_resized_parts : most_sized_parts);
         };
         const auto exact = [](const Rounding&) { return most_exact_parts; };
-        if (has_sizes() && !choose_rounding(graph, sized)) return false;
+        if (has_sizes_ && !choose_rounding(graph, sized)) return false;
         // Variants that differ in their directions too would be too many to judge.
-        if (uses_directions() && !choose_rounding(graph, exact)) return false;
+        if (uses_directions_ && !choose_rounding(graph, exact)) return false;
         if (!choose_variants(graph)) return false;
-        return !uses_directions() || variants_ == fewest || choose_rounding(graph, exact);
+        return !uses_directions_ || variants_ == fewest || choose_rounding(graph, exact);
     }
 
     /// One composer with all that it needs.
@@ -168,13 +156,6 @@ class Drawer {
         return context;
     }
 
-    /// Whether parts differ in their sizes only.
-    bool has_sizes() const {
-        if (grammar_.uses({TurtleCommand::widen})) return false; // a sum of widths goes with no size
-        return sizes_.any() ||
-               grammar_.uses({TurtleCommand::scale_by, TurtleCommand::scale_down_by, TurtleCommand::step_by});
-    }
-
     LsysLimits limits(std::size_t max_parts) const {
         const Rounding& rounding = roundings_.front();
         return {.max_parts = max_parts,
@@ -189,7 +170,7 @@ class Drawer {
 
     /// Whether a run, in place of what is composed, gives the same drawing.
     bool may_run() const {
-        return may_give_up_ && options_.steps && !word_ && !grammar_.is_stochastic && !uses_directions() &&
+        return may_give_up_ && options_.steps && !word_ && !grammar_.is_stochastic && !uses_directions_ &&
                LsysStream::can_derive(grammar_) && can_draw_run();
     }
 
@@ -238,22 +219,19 @@ class Drawer {
         TurtleContext context = turtle_context(bodies, diagnostics_, draws_lines(grammar_));
         context.open_width = width_is_open_ && draws_lines(grammar_);
         context.tallies = width_is_open_;
-        Turtle turtle(context, start());
-        LsysStream stream(rewriter_, models_, diagnostics_, stream_options());
-        if (!(word_ ? stream.draw(*word_, turtle) : stream.derive(turtle))) return std::nullopt;
-        TurtlePart part = std::move(turtle).finish();
-        part.modules = stream.module_count();
+        std::optional<TurtlePart> part = follow_word(context);
+        if (!part) return std::nullopt;
         if (width_is_open_) {
             const double before = width_;
-            set_width_for(part);
+            set_width_for(*part);
             if (context.open_width)
                 bodies.widen_packed(width_ / before);
-            else if ((part.reads & reads_width) && width_ != before)
+            else if ((part->reads & reads_width) && width_ != before)
                 return draw_run(graph); // '!' has mixed this width with others
         }
         variants_ = 1;
         roundings_ = {{}};
-        LsysDrawing drawing = drawing_of(part, "derived", 1);
+        LsysDrawing drawing = drawing_of(*part, "derived", 1);
         drawing.packed = bodies.take_packed();
         return drawing;
     }
@@ -288,11 +266,18 @@ class Drawer {
         bodies.tell(witness);
         TurtleContext context = turtle_context(bodies, diagnostics_, draws_lines(grammar_));
         context.tallies = width_is_open_;
+        return follow_word(context, &witness);
+    }
+
+    /// Has one turtle draw the word module by module. `witness`: null where nobody listens.
+    std::optional<TurtlePart> follow_word(TurtleContext& context, WordWitness* witness = nullptr) {
         Turtle turtle(context, start());
         LsysStream stream(rewriter_, models_, diagnostics_, stream_options());
-        stream.tell(witness);
+        if (witness) stream.tell(*witness);
         if (!(word_ ? stream.draw(*word_, turtle) : stream.derive(turtle))) return std::nullopt;
-        return std::move(turtle).finish();
+        TurtlePart part = std::move(turtle).finish();
+        part.modules = stream.module_count();
+        return part;
     }
 
     LsysStream::Options stream_options() const {
@@ -344,34 +329,9 @@ class Drawer {
         return word_.has_value();
     }
 
-    const char* obstacle_to_limit() const {
-        if (grammar_.has_queries()) return "with queries";
-        for (const LsysRule& rule : grammar_.rules) {
-            if (rule.has_context()) return "with contexts";
-            if (rule.sees_word()) return "that rewrite several modules at once";
-            if (rule.probability) return "with probabilities";
-            if (rule.draws > 0) return "with random numbers";
-            if (rule.time & reads_variables) return "that read variables";
-            if (rule.time != 0) return "that read 'step' or 'age'";
-            if (rule.has_blocks()) return "with blocks";
-        }
-        return nullptr;
-    }
-
     /// Longer derivations until their levels repeat.
     std::optional<LsysDrawing> draw_limit(Graph& graph, ObjectPool& pool) {
-        if (const char* obstacle = obstacle_to_limit()) {
-            diagnostics_
-                .error(grammar_.source->steps->span, fmt::format("productions {} have no limit", obstacle))
-                .with_hint("give 'steps N'");
-            return std::nullopt;
-        }
-        if (grammar_.skin > 0) {
-            diagnostics_
-                .error(grammar_.source->skin->span, "the limbs of a limit have no end, and so no skin")
-                .with_hint("give 'steps N'");
-            return std::nullopt;
-        }
+        if (!may_have_limit(grammar_, diagnostics_)) return std::nullopt;
         for (steps_ = first_limit_steps; steps_ <= last_limit_steps; steps_ *= 2) {
             Composition composition(*this, graph, pool, draws_lines(grammar_), models_);
             composition.turtle.limit = true;
@@ -386,7 +346,9 @@ class Drawer {
             if (diagnostics_.error_count() > errors) return std::nullopt;
             if (!folded && composition.composer.part_count() > most_limit_parts) break;
             if (!folded) continue;
-            const Affine limit_from_levels = unit_from(*part, graph);
+            const auto early = sketch(graph, steps_ / 2), late = sketch(graph, steps_ - steps_ / 4);
+            const Affine limit_from_levels =
+                early && late ? unit_limit(*part, early->reach, late->reach, grammar_.step) : Affine();
             for (Instance& instance : *folded)
                 instance.parent_from_child = limit_from_levels * instance.parent_from_child;
             LsysDrawing drawing;
@@ -406,37 +368,15 @@ class Drawer {
 
     /// The part that would be drawn after so many steps, without adding it to the graph.
     std::optional<TurtlePart> sketch(const Graph& graph, unsigned steps) {
-        const unsigned before = std::exchange(steps_, steps);
-        std::optional<TurtlePart> part = sketch(graph);
-        steps_ = before;
-        return part;
-    }
-
-    std::optional<TurtlePart> sketch(const Graph& graph) {
         Graph scratch = graph;
         ObjectPool pool(scratch);
+        const unsigned before = std::exchange(steps_, steps);
         Composition composition(*this, scratch, pool, false, stand_ins(scratch));
         composition.turtle.tallies = true;
         composition.turtle.taper = 1; // only lengths matter
-        return composition.variant(0);
-    }
-
-    /// The limit of figures that grow has no size of its own: the way from its start to its end is made one
-    /// step long, upwards, or, where it comes back, its reach. Others stay as they are.
-    Affine unit_from(const TurtlePart& part, const Graph& graph) {
-        constexpr double same = 1e-6;
-        const auto early = sketch(graph, steps_ / 2), late = sketch(graph, steps_ - steps_ / 4);
-        if (!early || !late) return {};
-        // The reach of a figure that converges changes by one factor in as many steps (A. Aitken's limit).
-        const double gain = part.reach - late->reach, factor = gain / (late->reach - early->reach);
-        const double limit = part.reach + gain * factor / (1 - factor);
-        const bool settles = std::abs(factor) < 1 - same && limit > same * part.reach;
-        if (std::abs(gain) <= same * part.reach || settles) return {};
-        const Vec3 chord = part.start_from_exit.translation;
-        const double length = glm::length(chord);
-        const double size = length > same * part.reach ? length : part.reach;
-        const Mat3 frame = length > same * part.reach ? chord_frame(chord) : Mat3(1.0);
-        return {glm::transpose(frame) * (grammar_.step / size), Vec3(0.0)};
+        std::optional<TurtlePart> part = composition.variant(0);
+        steps_ = before;
+        return part;
     }
 
     /// Composes a small pool, or what of it there is room for, and judges by its variance how many variants
@@ -498,25 +438,6 @@ class Drawer {
         return draws ? draw_sets : fewest_variants;
     }
 
-    bool uses_directions() const {
-        return grammar_.uses({TurtleCommand::level, TurtleCommand::tropism, TurtleCommand::stiffen,
-                              TurtleCommand::set_tropism, TurtleCommand::bend_down});
-    }
-
-    /// Adds roundings from exact to coarse.
-    void add_roundings() {
-        roundings_.push_back({});
-        if (has_sizes()) {
-            roundings_.push_back({.resizes = true});
-            for (const double step : {1.0 / 64, 1.0 / 32, 1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 1.0})
-                roundings_.push_back({.resizes = true, .size_step = step});
-        }
-        if (!uses_directions()) return;
-        const double size_step = has_sizes() ? 1.0 / 16 : 0;
-        for (const double angle_deg : {0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0})
-            roundings_.push_back({has_sizes(), size_step, angle_deg});
-    }
-
     /// The first that keeps the parts few enough; those before are dropped. False after an error of the
     /// productions: others come again when the model itself is composed.
     template<typename Most> bool choose_rounding(const Graph& graph, const Most& most) {
@@ -540,7 +461,7 @@ class Drawer {
     /// Composed once to see how large the figure is, and how long its segments are.
     bool choose_width(const Graph& graph) {
         if (!width_is_open_) return true;
-        const std::optional<TurtlePart> figure = sketch(graph);
+        const std::optional<TurtlePart> figure = sketch(graph, steps_);
         if (!figure) return false;
         set_width_for(*figure);
         return true;
@@ -565,12 +486,13 @@ class Drawer {
     bool in_run_ = false;            ///< it is drawn module by module; without a word it is derived so too
     double width_;
     bool width_is_open_; ///< width_ is one to go on with
+    bool has_sizes_, uses_directions_;
+    std::deque<Rounding> roundings_; ///< left to try; the first is in use
     unsigned steps_ = 0;
     std::uint32_t variants_ = 1;
     double drift_ = 0;
-    bool limited_by_work_ = false;   ///< the variants are fewer than the drift asks for
-    std::deque<Rounding> roundings_; ///< left to try; the first is in use
-    std::vector<Material> palette_;  ///< of the colour indices
+    bool limited_by_work_ = false;  ///< the variants are fewer than the drift asks for
+    std::vector<Material> palette_; ///< of the colour indices
 };
 
 } // namespace

@@ -17,6 +17,7 @@
 #include "compiler/lsys/as_drawn.h"
 #include "compiler/lsys/compile/grammar.h"
 #include "compiler/lsys/drawing.h"
+#include "compiler/lsys/set_block.h"
 #include "compiler/lsys/turtle/model_placer.h"
 #include "compiler/support/counter_random.h"
 #include "compiler/syntax/everyday_words.h"
@@ -136,7 +137,7 @@ class LsysLowering {
                 evaluate_lets(block.lets, lets_, lowering_, is_main ? given_inner() : Environment());
             if (is_main) {
                 main_block_ = &added;
-                set_main_ = with_settings(block, lets);
+                set_main_ = set_block(block, lets, lowering_);
                 added.source = &*set_main_;
             }
             all_lets.insert(lets.begin(), lets.end());
@@ -149,42 +150,6 @@ class LsysLowering {
         if (lowering_.at_root_model())
             check_set_names(all_lets, {"angle", "step", "width", "thickness", "steps", "seed"},
                             tree_.statements, lowering_);
-    }
-
-    /// `--set angle=40` speaks to the block that is the model.
-    LsysBlock with_settings(LsysBlock block, Environment lets) {
-        const std::pair<const char*, std::optional<LsysValue>*> settings[] = {{"angle", &block.angle},
-                                                                              {"step", &block.step},
-                                                                              {"width", &block.width},
-                                                                              {"thickness", &block.thickness},
-                                                                              {"seed", &block.seed}};
-        const auto literal = [](double value) {
-            Expression expression;
-            expression.number = value;
-            return expression;
-        };
-        for (LsysVariable& variable : block.variables) {
-            const auto value = set_value(variable.name.text, {}, lowering_);
-            if (value && variable.sizes.empty()) variable.values.assign(1, literal(*value));
-            lets.try_emplace(std::string(variable.name.text)); // it comes before a setting of its name
-        }
-        for (const auto& [name, setting] : settings) {
-            const std::optional<double> value = set_value(name, lets, lowering_);
-            if (*setting) note_setting(name, (*setting)->value, value, lets);
-            if (value) *setting = LsysValue{literal(*value), Span()};
-        }
-        const std::optional<double> steps = set_value("steps", lets, lowering_);
-        if (block.steps && block.steps->value) note_setting("steps", *block.steps->value, steps, lets);
-        if (steps) block.steps = LsysSteps{literal(*steps), Span()};
-        return block;
-    }
-
-    /// `set`: by the caller, in place of the text.
-    void note_setting(const char* name, const Expression& text, std::optional<double> set,
-                      const Environment& lets) {
-        Diagnostics quiet; // the grammar reports what is wrong
-        const std::optional<double> value = set ? set : evaluate(text, lets, quiet);
-        if (value) note_parameter(ModelParameter::Kind::setting, name, text, *value, lowering_);
     }
 
     void add_family(Block& block, const Environment& lets) {
@@ -273,9 +238,8 @@ class LsysLowering {
             return {use->second.root, use->second.family ? &*use->second.family : nullptr};
         for (Block& block : blocks_) {
             if (block.source->name.text != name) continue;
-            if (!block.family) return {root_of(block, span)};
-            if (!block.under_way) return {{}, &*block.family};
-            return {root_of(block, span)}; // for its error
+            if (block.family && !block.under_way) return {{}, &*block.family};
+            return {root_of(block, span)}; // of a family: for its error
         }
         report_unknown(name, span);
         return {};
@@ -314,19 +278,17 @@ class LsysLowering {
 
     bool is_root(const Block& block) { return lowering_.at_root_model() && &block == main_block_; }
 
-    bool is_timed(const LsysGrammar& grammar) const { return grammar.draws_in_time(); }
-
     /// The steps that the command line asks for.
     std::optional<unsigned> asked_steps(const LsysGrammar& grammar) const {
         const LowerOptions& options = lowering_.options;
-        if (!options.time || (options.steps && !is_timed(grammar))) return options.steps;
+        if (!options.time || (options.steps && !grammar.draws_in_time())) return options.steps;
         return static_cast<unsigned>(*options.time);
     }
 
     /// The share of the step after the last that has passed when the block is drawn.
     double share_of_step(const Block& block, const LsysGrammar& grammar) {
         const std::optional<double>& time = lowering_.options.time;
-        return time && is_root(block) && is_timed(grammar) ? *time - std::floor(*time) : 0;
+        return time && is_root(block) && grammar.draws_in_time() ? *time - std::floor(*time) : 0;
     }
 
     /// False after an error; no steps are infinitely many.
@@ -413,7 +375,7 @@ class LsysLowering {
             lowering_.notes.derivation->grows = grammar.grows();
         }
         const bool is_idle =
-            steps == 0u && !is_asked_for_steps(block, grammar) && grammar.has_rules(RuleKind::produce);
+            steps == 0u && !(is_root(block) && asked_steps(grammar)) && grammar.has_rules(RuleKind::produce);
         if (drawing->instances.empty() && !drawing->packed) {
             report_nothing(block, steps, is_idle);
             return std::nullopt;
@@ -437,10 +399,6 @@ class LsysLowering {
             const std::optional<Primitive>& primitive = graph_.objects[*model.root].primitive;
             return !primitive || *primitive == PrimitiveKind::plane;
         });
-    }
-
-    bool is_asked_for_steps(const Block& block, const LsysGrammar& grammar) {
-        return is_root(block) && asked_steps(grammar);
     }
 
     void warn_of_no_steps(const LsysBlock& block) {

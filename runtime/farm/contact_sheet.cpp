@@ -6,7 +6,7 @@
 
 #include "runtime/image/texture.h"
 #include "runtime/image_files/small_text.h"
-#include "runtime/trace/picture_tracer.h"
+#include "runtime/trace/tile.h"
 
 namespace graftal {
 

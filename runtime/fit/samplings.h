@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "compiler/scene/scene.h"
-#include "runtime/trace/picture_tracer.h"
+#include "runtime/trace/sampling.h"
 
 namespace graftal {
 

@@ -11,7 +11,7 @@
 #include "compiler/editing/complete.h"
 #include "compiler/editing/format.h"
 #include "compiler/editing/hover.h"
-#include "compiler/editing/names.h"
+#include "compiler/editing/names/names.h"
 #include "compiler/editing/positions.h"
 #include "compiler/editing/rename.h"
 #include "compiler/support/path_text.h"

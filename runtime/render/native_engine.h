@@ -6,7 +6,7 @@
 
 #include "runtime/render/render.h"
 #include "runtime/render/stopwatch.h"
-#include "runtime/trace/picture_tracer.h"
+#include "runtime/trace/sampling.h"
 
 namespace graftal {
 

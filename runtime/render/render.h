@@ -11,7 +11,8 @@
 #include "runtime/image_files/image_files.h"
 #include "runtime/render/picture_session.h"
 #include "runtime/trace/picture_film.h"
-#include "runtime/trace/picture_tracer.h"
+#include "runtime/trace/sampling.h"
+#include "runtime/trace/tile.h"
 
 namespace graftal {
 

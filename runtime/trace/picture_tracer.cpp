@@ -36,11 +36,6 @@ constexpr std::uint64_t probe_piece = 4;
 /// 1 / g and 1 / g^2 of the plastic number g, g^3 = g + 1: no rational is near their combinations.
 const glm::dvec2 r2_step(0.7548776662466927, 0.5698402909980532);
 
-/// Points along each side of a pixel that are its own.
-int steps_of(const Sampling& sampling) {
-    return sampling.antialias ? 1 << (*sampling.antialias - 1) : 1;
-}
-
 /// One thread's tools, and what it keeps for their memory.
 class Worker {
   public:
@@ -61,7 +56,7 @@ class Worker {
         const Tile seen = common(tile, window);
         if (sampling.most_samples > 0) return trace_samples(sampling, seen, picture);
         if (!sampling.antialias) return trace_blocks(1, seen, picture);
-        return trace_lattice(steps_of(sampling), seen, picture);
+        return trace_lattice(sampling.steps(), seen, picture);
     }
 
     /// The features of the tile's pixels, each by rays through its square and the eight around it.
@@ -71,8 +66,8 @@ class Worker {
         FeatureSums sums(tile);
         const Tile around =
             common({tile.x - 1, tile.y - 1, tile.width + 2, tile.height + 2}, whole_of(view_.size));
-        std::array<Ray, Surfaces::most_together> ahead;
-        std::array<glm::dvec2, Surfaces::most_together> places;
+        std::array<Ray, together> ahead;
+        std::array<glm::dvec2, together> places;
         std::vector<SampleStream> randoms(ahead.size(), SampleStream(0, 0));
         std::size_t count = 0;
         const auto look = [&] {
@@ -166,7 +161,7 @@ class Worker {
     /// Looks through `count` points, neighbours together: sight_of(i) is the i-th, and take(i, light) gets
     /// its light, in order, and says whether to go on. False if it was cancelled.
     template<class SightOf, class Take> bool look(int count, const SightOf& sight_of, const Take& take) {
-        std::array<Ray, Surfaces::most_together> rays;
+        std::array<Ray, together> rays;
         std::vector<SampleStream>& randoms = randoms_;
         bool more = true;
         for (int first = 0; first < count && more; first += together) {
@@ -217,10 +212,10 @@ class Worker {
     /// A block has its middle in the whole picture, however little of it is in the window.
     bool trace_blocks(int block, const Tile& tile, Image& picture) {
         // Two rows and four columns at a time are nearer to each other than eight in a row.
-        constexpr int down = 2, across = static_cast<int>(Surfaces::most_together) / down;
+        constexpr int down = 2, across = together / down;
         for (int y = tile.y; y < tile.y + tile.height; y += down * block)
             for (int x = tile.x; x < tile.x + tile.width; x += across * block) {
-                std::array<Tile, Surfaces::most_together> blocks;
+                std::array<Tile, together> blocks;
                 int count = 0;
                 for (int top = y; top < std::min(y + down * block, tile.y + tile.height); top += block)
                     for (int left = x; left < std::min(x + across * block, tile.x + tile.width);
@@ -429,37 +424,6 @@ std::vector<Tile> tiles_of(ImageSize size, int block, const Tile& window) {
 }
 
 } // namespace
-
-double Sampling::samples_a_pixel() const {
-    if (block == 1 && most_samples > 0) return static_cast<double>(most_samples) / sparse;
-    const double steps = steps_of(*this);
-    return steps * steps / (static_cast<double>(block) * block);
-}
-
-int Sampling::feature_rays() const {
-    constexpr int enough = 4;
-    return denoise && most_samples >= 2 ? std::min(most_samples / 2, enough) : 0;
-}
-
-double Sampling::cost_in_samples() const {
-    constexpr double share_of_sample = 0.5;
-    return samples_a_pixel() + share_of_sample * feature_rays();
-}
-
-TraceStatistics& TraceStatistics::operator+=(const TraceStatistics& other) {
-    camera_rays += other.camera_rays;
-    work += other.work;
-    given_up += other.given_up;
-    noisy_pixels += other.noisy_pixels;
-    noise_1024 += other.noise_1024;
-    measured_pixels += other.measured_pixels;
-    return *this;
-}
-
-std::optional<double> TraceStatistics::noise_255() const {
-    if (measured_pixels == 0) return {};
-    return static_cast<double>(noise_1024) / 1024 / static_cast<double>(measured_pixels);
-}
 
 PictureTracer::PictureTracer(const TraceModel& model, const ShaderLimits& limits)
     : model_(model), limits_(limits) {}

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/inst/parse/references.h"
 #include "compiler/inst/parse/repeat.h"
 #include "compiler/syntax/everyday_words.h"
 #include "compiler/syntax/expression_parser.h"
@@ -46,26 +47,22 @@ template<typename T> class Blocks {
 /// The lines of one object, from its '{' to its '}'.
 class BodyParser {
   public:
-    /// `scatters`: how many there are in the file so far.
     BodyParser(TokenStream& stream, InstDefinition& definition, std::size_t& scatters)
         : stream_(stream), diagnostics_(stream.diagnostics()), definition_(definition), scatters_(scatters) {}
 
-    /// Requires that the '{' was just taken.
-    void parse() {
+    /// Requires that the '{' was just taken. False if the object's '}' is missing.
+    bool parse() {
         if (Diagnostic* const missing =
                 parse_lines(fmt::format("'}}' at the end of object '{}'", definition_.name))) {
             if (stream_.at("material"))
                 missing->with_hint("define materials outside of objects; inside, write the material's name: "
                                    "'material: NAME'");
-            closed_ = false;
-            return;
+            return false;
         }
         measure_group();
         check_not_empty();
+        return true;
     }
-
-    /// Whether the object's '}' was there.
-    bool closed() const { return closed_; }
 
   private:
     /// The next token begins a statement of the file: the '}' of this object is missing.
@@ -131,17 +128,10 @@ class BodyParser {
         return lines;
     }
 
-    /// `scatter: tree` or `scatter tree`, and not an object of that name.
-    bool at_scatter() const {
+    /// `scatter: tree`, `difference cube`, and not an object of that name.
+    bool at_scatter_or_combination() const {
         const Token& after = stream_.peek(1);
-        return stream_.at("scatter") &&
-               (after.is(":") || (after.kind == TokenKind::name && !after.first_on_line));
-    }
-
-    /// `difference: cube` or `difference cube`, and not an object of that name.
-    bool at_combination() const {
-        const Token& after = stream_.peek(1);
-        return (stream_.at("intersection") || stream_.at("difference")) &&
+        return (stream_.at("scatter") || stream_.at("intersection") || stream_.at("difference")) &&
                (after.is(":") || (after.kind == TokenKind::name && !after.first_on_line));
     }
 
@@ -195,8 +185,8 @@ class BodyParser {
     }
 
     bool at_group() const {
-        return stream_.at("union") || stream_.at("instance") || stream_.at("terminal") || at_scatter() ||
-               at_combination();
+        return stream_.at("union") || stream_.at("instance") || stream_.at("terminal") ||
+               at_scatter_or_combination();
     }
 
     bool parse_hue() {
@@ -205,9 +195,7 @@ class BodyParser {
         if (!parse_hue_value(stream_, hue)) return false;
         InstGroup* group = current(keyword);
         if (!group) return true;
-        if (group->hue)
-            diagnostics_.error(keyword.span, "duplicate 'hue'")
-                .with_note(group->hue->span, "first given here");
+        if (group->hue) report_duplicate(keyword, *group->hue);
         group->hue = std::make_unique<Expression>(std::move(*hue));
         return true;
     }
@@ -286,7 +274,7 @@ class BodyParser {
             group.scatter = std::make_unique<InstScatter>();
             group.scatter->ordinal = scatters_++;
         }
-        lost_group_ = !parse_masters(group, keyword.text);
+        lost_group_ = !parse_inst_references(stream_, group.masters, keyword.text);
         if (lost_group_) return false;
         group.span = stream_.span_from(keyword.span);
         take_combination(keyword);
@@ -349,7 +337,7 @@ class BodyParser {
     bool parse_plain_group() {
         const Token name = stream_.peek();
         InstGroup group;
-        if (!parse_masters(group, {})) return false;
+        if (!parse_inst_references(stream_, group.masters, {})) return false;
         group.span = stream_.span_from(name.span);
         return add(std::move(group));
     }
@@ -358,46 +346,6 @@ class BodyParser {
         if (std::string hint = line_word_hint(word.text); !hint.empty()) return hint;
         const std::string meant = did_you_mean(word.text, body_keywords());
         return meant.empty() ? choices(word.text, body_lines()) : meant;
-    }
-
-    bool parse_masters(InstGroup& group, std::string_view keyword) {
-        do {
-            const bool keyword_next = stream_.peek(1).is(":") && is_body_keyword(stream_.peek());
-            if (!stream_.at_name() || keyword_next) {
-                const std::string after(group.masters.empty() ? keyword : stream_.previous().text);
-                const bool block = stream_.at("{");
-                Diagnostic& error = stream_.expected(fmt::format("the name of an object after '{}'", after));
-                if (block)
-                    error.with_hint(fmt::format("write names without braces: '{}: sphere, cube'", after));
-                return false;
-            }
-            InstReference reference;
-            const Token name = stream_.next();
-            reference.name = name.text;
-            if (!parse_arguments_of(reference)) return false;
-            reference.span = stream_.span_from(name.span);
-            group.masters.push_back(std::move(reference));
-        } while (goes_on() && stream_.accept(","));
-        return true;
-    }
-
-    /// Numbers in parentheses, or the name of a file in quotes, with or without them; or nothing.
-    bool parse_arguments_of(InstReference& reference) {
-        const bool open = stream_.at("(");
-        if (stream_.peek(open ? 1 : 0).kind != TokenKind::string)
-            return !stream_.accept("(") || parse_arguments(stream_, reference.arguments);
-        stream_.accept("(");
-        const Token path = stream_.next();
-        reference.path = path.text;
-        reference.path_span = path.span;
-        return !open || stream_.expect(")", path.text);
-    }
-
-    /// A comma may also end a line.
-    bool goes_on() const {
-        const Token& after = stream_.peek(1);
-        return stream_.at(",") && after.kind == TokenKind::name &&
-               !(is_body_keyword(after) && stream_.peek(2).is(":"));
     }
 
     /// Ends the last group and measures its lines. Its masters come before these lines, and count by the
@@ -428,8 +376,7 @@ class BodyParser {
     }
 
     bool add_terminal(InstGroup group) {
-        const auto other = std::find_if(definition_.groups.begin(), definition_.groups.end(),
-                                        [](const InstGroup& g) { return g.terminal; });
+        const auto other = std::ranges::find(definition_.groups, true, &InstGroup::terminal);
         if (other != definition_.groups.end())
             diagnostics_
                 .error(group.span, fmt::format("object '{}' already has a terminal", definition_.name))
@@ -448,6 +395,11 @@ class BodyParser {
                 .with_hint("name the objects first, with 'union:' or 'instance:'");
         failed_ = true;
         return nullptr;
+    }
+
+    void report_duplicate(const Token& keyword, const Expression& first) {
+        diagnostics_.error(keyword.span, fmt::format("duplicate '{}'", keyword.text))
+            .with_note(first.span, "first given here");
     }
 
     bool parse_transform_line() {
@@ -491,21 +443,8 @@ class BodyParser {
     }
 
     bool parse_chance() {
-        const Token keyword = stream_.next();
-        stream_.accept(":");
-        std::optional<Expression> chance = parse_expression(stream_);
-        if (!chance) return false;
-        InstGroup* group = current(keyword);
-        if (!group) return true;
-        if (group->terminal) {
-            diagnostics_.error(keyword.span, "a terminal has no chance")
-                .with_hint("a terminal stands for the whole object wherever graftal cuts it");
-        } else if (group->chance) {
-            diagnostics_.error(keyword.span, "duplicate 'chance'")
-                .with_note(group->chance->span, "first given here");
-        }
-        group->chance = std::move(chance);
-        return true;
+        return parse_number(&InstGroup::chance, false, "a terminal has no chance",
+                            "a terminal stands for the whole object wherever graftal cuts it");
     }
 
     /// `below: 12`, or after a terminal `below 12`; else an object may have that name.
@@ -515,27 +454,31 @@ class BodyParser {
     }
 
     bool parse_below() {
+        return parse_number(&InstGroup::below, true, "'below' belongs to a terminal",
+                            "it sets the size in pixels below which the terminal replaces the object");
+    }
+
+    /// A line that terminals have, or all but terminals; the problem and hint are for the others.
+    bool parse_number(std::optional<Expression> InstGroup::*number, bool of_terminals, const char* problem,
+                      const char* hint) {
         const Token keyword = stream_.next();
         stream_.accept(":");
-        std::optional<Expression> size_px = parse_expression(stream_);
-        if (!size_px) return false;
+        std::optional<Expression> value = parse_expression(stream_);
+        if (!value) return false;
         InstGroup* group = current(keyword);
         if (!group) return true;
-        if (!group->terminal) {
-            diagnostics_.error(keyword.span, "'below' belongs to a terminal")
-                .with_hint("it sets the size in pixels below which the terminal replaces the object");
-        } else if (group->below) {
-            diagnostics_.error(keyword.span, "duplicate 'below'")
-                .with_note(group->below->span, "first given here");
-        }
-        group->below = std::move(size_px);
+        if (group->terminal != of_terminals)
+            diagnostics_.error(keyword.span, problem).with_hint(hint);
+        else if (group->*number)
+            report_duplicate(keyword, *(group->*number));
+        group->*number = std::move(value);
         return true;
     }
 
     void check_not_empty() {
-        const bool drawn = std::any_of(definition_.groups.begin(), definition_.groups.end(),
-                                       [](const InstGroup& group) { return !group.terminal; });
-        if (drawn || conditional_ || failed_ || diagnostics_.full()) return;
+        if (std::ranges::count(definition_.groups, false, &InstGroup::terminal) > 0 || conditional_ ||
+            failed_ || diagnostics_.full())
+            return;
         diagnostics_.error(definition_.span, fmt::format("object '{}' is empty", definition_.name))
             .with_hint("give it a 'union:' or an 'instance:', or write 'nothing' if that is meant");
     }
@@ -545,7 +488,6 @@ class BodyParser {
     InstDefinition& definition_;
     std::size_t& scatters_;
     bool failed_ = false;
-    bool closed_ = true;
     std::size_t group_begin_ = 0; ///< of the lines of the last group
     bool sealed_ = false;         ///< after the '{' or '}' of a block of repeated groups, a line has no group
     Blocks<std::shared_ptr<const InstRepeat>> repeats_; ///< around the next group
@@ -557,9 +499,7 @@ class BodyParser {
 } // namespace
 
 bool parse_inst_body(TokenStream& stream, InstDefinition& definition, std::size_t& scatters) {
-    BodyParser body(stream, definition, scatters);
-    body.parse();
-    return body.closed();
+    return BodyParser(stream, definition, scatters).parse();
 }
 
 } // namespace graftal

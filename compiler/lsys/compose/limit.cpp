@@ -8,6 +8,8 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 namespace graftal {
 
@@ -31,6 +33,21 @@ bool mentions(const Expression& expression, std::string_view name) {
 /// In the limit, what is smaller than the tolerance is a point.
 bool lasts(const Instance& instance) {
     return largest_entry(instance.parent_from_child.linear) > tolerance;
+}
+
+/// A feature of some production by which derivations have no limit; null if there is none.
+const char* obstacle_to_limit(const LsysGrammar& grammar) {
+    if (grammar.has_queries()) return "with queries";
+    for (const LsysRule& rule : grammar.rules) {
+        if (rule.has_context()) return "with contexts";
+        if (rule.sees_word()) return "that rewrite several modules at once";
+        if (rule.probability) return "with probabilities";
+        if (rule.draws > 0) return "with random numbers";
+        if (rule.time & reads_variables) return "that read variables";
+        if (rule.time != 0) return "that read 'step' or 'age'";
+        if (rule.has_blocks()) return "with blocks";
+    }
+    return nullptr;
 }
 
 template<typename Visit> void for_each_lasting(const std::vector<Instance>& instances, const Visit& visit) {
@@ -238,11 +255,37 @@ class LevelFolder {
 
 } // namespace
 
+bool may_have_limit(const LsysGrammar& grammar, Diagnostics& diagnostics) {
+    Diagnostic* error = nullptr;
+    if (const char* const obstacle = obstacle_to_limit(grammar))
+        error = &diagnostics.error(grammar.source->steps->span,
+                                   fmt::format("productions {} have no limit", obstacle));
+    else if (grammar.skin > 0)
+        error = &diagnostics.error(grammar.source->skin->span,
+                                   "the limbs of a limit have no end, and so no skin");
+    if (error) error->with_hint("give 'steps N'");
+    return !error;
+}
+
 std::optional<std::vector<Instance>>
 fold_levels(const std::vector<Instance>& instances, unsigned steps,
             const std::unordered_map<ObjectId, LsysComposer::Origin>& origins, const LsysRewriter& rewriter,
             Graph& graph, ObjectPool& pool, Diagnostics& diagnostics) {
     return LevelFolder(steps, origins, rewriter, graph, pool, diagnostics).fold(instances);
+}
+
+Affine unit_limit(const TurtlePart& figure, double half, double most, double step) {
+    constexpr double same = 1e-6;
+    // The reach of a figure that converges changes by one factor in as many steps (A. Aitken's limit).
+    const double gain = figure.reach - most, factor = gain / (most - half);
+    const double limit = figure.reach + gain * factor / (1 - factor);
+    const bool settles = std::abs(factor) < 1 - same && limit > same * figure.reach;
+    if (std::abs(gain) <= same * figure.reach || settles) return {};
+    const Vec3 chord = figure.start_from_exit.translation;
+    const double length = glm::length(chord);
+    if (length > same * figure.reach)
+        return {glm::transpose(chord_frame(chord)) * (step / length), Vec3(0.0)};
+    return {Mat3(step / figure.reach), Vec3(0.0)};
 }
 
 } // namespace graftal

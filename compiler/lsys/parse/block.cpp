@@ -373,8 +373,7 @@ class BlockParser {
             diagnostics_.error(name.span,
                                fmt::format("names of modules have at most {} characters", max_lsys_symbol));
         } else if (!text_.symbols.add(name.text)) {
-            const auto first = std::find_if(block_.modules.begin(), block_.modules.end(),
-                                            [&](const Name& other) { return other.text == name.text; });
+            const auto first = std::ranges::find(block_.modules, name.text, &Name::text);
             diagnostics_.error(name.span, fmt::format("duplicate module '{}'", name.text))
                 .with_note(first->span, "first declared here");
         } else {
@@ -395,8 +394,9 @@ class BlockParser {
     void parse_other(const LsysStatement& statement) {
         const std::string_view word = statement.word;
         const bool call = scanner_.text().substr(statement.begin + word.size(), 1) == "(";
+        const bool of_file = word == "use" || std::ranges::count(scene_keywords(), word) > 0;
         TokenStream stream(
-            !call && (word == "use" || is_scene_word(word))
+            !call && of_file
                 ? lex_range(text_.sources, scanner_.span(statement.begin, statement.end), diagnostics_)
                 : std::vector<Token>(1),
             diagnostics_, lsys_line_end);
@@ -475,11 +475,6 @@ class BlockParser {
                            ? "write a production as A -> B, and a named number as 'let a = 3'"
                            : "write a production as A -> B");
         return true;
-    }
-
-    static bool is_scene_word(std::string_view word) {
-        const std::vector<std::string>& words = scene_keywords();
-        return std::find(words.begin(), words.end(), word) != words.end();
     }
 
     void parse_misplaced(TokenStream& stream, std::string_view word) {

@@ -7,10 +7,9 @@
 #include <ostream>
 #include <streambuf>
 
-#include <tiny_gltf.h>
-
 #include "compiler/unfolded/looks.h"
 #include "runtime/export/formats/flat_files.h"
+#include "runtime/export/formats/gltf_buffer.h"
 #include "runtime/export/formats/group_mesh.h"
 #include "runtime/export/formats/pbr.h"
 #include "runtime/export/formats/picture_copies.h"
@@ -84,9 +83,7 @@ class GltfWriter {
             add_tree(root);
         add_camera(metres);
         add_lights(metres);
-        tinygltf::Scene all;
-        all.nodes = top_;
-        model_.scenes.push_back(std::move(all));
+        model_.scenes.emplace_back().nodes = top_;
         model_.defaultScene = 0;
         return pictures_.status();
     }
@@ -102,8 +99,6 @@ class GltfWriter {
         return fmt::format("{} meshes of {:.0f} triangles, {} nodes", model_.meshes.size(), groups_.triangles,
                            model_.nodes.size());
     }
-
-    const MeshGroups& groups() const { return groups_; }
 
   private:
     /// About: with the corners, normals and colours that it has for itself.
@@ -138,9 +133,8 @@ class GltfWriter {
     }
 
     int add_node(tinygltf::Node node) {
-        model_.nodes.push_back(std::move(node));
-        const int id = static_cast<int>(model_.nodes.size()) - 1;
-        if (model_.nodes.size() == 1) top_.push_back(id);
+        const int id = add_to(model_.nodes, std::move(node));
+        if (id == 0) top_.push_back(id);
         return id;
     }
 
@@ -212,80 +206,37 @@ class GltfWriter {
             add_placed(root, std::move(node), at.world_from_mesh);
         }
         for (const auto& [id, list] : places) {
-            std::vector<float> moves, turns, scales;
+            std::vector<std::array<float, 3>> moves, scales;
+            std::vector<std::array<float, 4>> turns;
             for (const MoveTurnScale& at : list) {
-                for (int axis = 0; axis < 3; ++axis) {
-                    moves.push_back(static_cast<float>(at.move[axis]));
-                    scales.push_back(static_cast<float>(at.scale[axis]));
-                }
-                for (const double value : {at.turn.x, at.turn.y, at.turn.z, at.turn.w})
-                    turns.push_back(static_cast<float>(value));
+                const glm::vec3 move(at.move), scale(at.scale);
+                const glm::quat turn(at.turn);
+                moves.push_back({move.x, move.y, move.z});
+                turns.push_back({turn.x, turn.y, turn.z, turn.w});
+                scales.push_back({scale.x, scale.y, scale.z});
             }
             GltfObject attributes;
-            attributes["TRANSLATION"] = tinygltf::Value(floats(moves, TINYGLTF_TYPE_VEC3, 0));
-            attributes["ROTATION"] = tinygltf::Value(floats(turns, TINYGLTF_TYPE_VEC4, 0));
-            attributes["SCALE"] = tinygltf::Value(floats(scales, TINYGLTF_TYPE_VEC3, 0));
-            GltfObject extension;
-            extension["attributes"] = tinygltf::Value(attributes);
+            attributes["TRANSLATION"] = tinygltf::Value(add_vectors(model_, moves, 0));
+            attributes["ROTATION"] = tinygltf::Value(add_vectors(model_, turns, 0));
+            attributes["SCALE"] = tinygltf::Value(add_vectors(model_, scales, 0));
             tinygltf::Node node;
             node.name = scene_.nodes[id].name;
             node.mesh = mesh_of(id);
-            node.extensions["EXT_mesh_gpu_instancing"] = tinygltf::Value(extension);
+            extend(node.extensions, "EXT_mesh_gpu_instancing", {{"attributes", tinygltf::Value(attributes)}});
+            model_.extensionsRequired = {"EXT_mesh_gpu_instancing"};
             add_child(root, std::move(node));
-            uses("EXT_mesh_gpu_instancing", true);
         }
     }
 
-    void uses(const std::string& extension, bool required = false) {
-        const auto add = [&](std::vector<std::string>& list) {
-            if (std::ranges::find(list, extension) == list.end()) list.push_back(extension);
-        };
-        add(model_.extensionsUsed);
-        if (required) add(model_.extensionsRequired);
+    void extend(tinygltf::ExtensionMap& extensions, const std::string& name, GltfObject values) {
+        extensions[name] = tinygltf::Value(std::move(values));
+        std::vector<std::string>& used = model_.extensionsUsed;
+        if (std::ranges::find(used, name) == used.end()) used.push_back(name);
     }
 
     int mesh_of(SceneId id) const {
         const auto known = mesh_of_.find(id);
         return known == mesh_of_.end() ? -1 : known->second;
-    }
-
-    template<typename Value> int view_of(const std::vector<Value>& values, int target) {
-        std::vector<unsigned char>& data = model_.buffers[0].data;
-        data.resize((data.size() + 3) / 4 * 4);
-        tinygltf::BufferView view;
-        view.buffer = 0;
-        view.byteOffset = data.size();
-        view.byteLength = values.size() * sizeof(Value);
-        view.target = target;
-        const auto* const bytes = reinterpret_cast<const unsigned char*>(values.data());
-        data.insert(data.end(), bytes, bytes + view.byteLength);
-        model_.bufferViews.push_back(std::move(view));
-        return static_cast<int>(model_.bufferViews.size()) - 1;
-    }
-
-    int accessor(int view, std::size_t count, int component, int type) {
-        tinygltf::Accessor accessor;
-        accessor.bufferView = view;
-        accessor.componentType = component;
-        accessor.type = type;
-        accessor.count = count;
-        model_.accessors.push_back(std::move(accessor));
-        return static_cast<int>(model_.accessors.size()) - 1;
-    }
-
-    int floats(const std::vector<float>& values, int type, int target) {
-        return accessor(view_of(values, target),
-                        values.size() / static_cast<std::size_t>(type == TINYGLTF_TYPE_VEC4   ? 4
-                                                                 : type == TINYGLTF_TYPE_VEC3 ? 3
-                                                                                              : 2),
-                        TINYGLTF_COMPONENT_TYPE_FLOAT, type);
-    }
-
-    template<std::size_t n> int vectors(const std::vector<std::array<float, n>>& values, int type) {
-        std::vector<float> all;
-        for (const auto& value : values)
-            all.insert(all.end(), value.begin(), value.end());
-        return floats(all, type, TINYGLTF_TARGET_ARRAY_BUFFER);
     }
 
     void add_mesh(SceneId id) {
@@ -294,14 +245,13 @@ class GltfWriter {
         for (const GroupSurface& surface : surfaces_of(scene_, id, meshes_))
             mesh.primitives.push_back(primitive_of(surface));
         if (mesh.primitives.empty()) return; // nothing of it is left in 32 bits
-        mesh_of_[id] = static_cast<int>(model_.meshes.size());
-        model_.meshes.push_back(std::move(mesh));
+        mesh_of_[id] = add_to(model_.meshes, std::move(mesh));
     }
 
     tinygltf::Primitive primitive_of(const GroupSurface& surface) {
         tinygltf::Primitive primitive;
         primitive.mode = TINYGLTF_MODE_TRIANGLES;
-        const int positions = vectors(surface.vertices, TINYGLTF_TYPE_VEC3);
+        const int positions = add_vectors(model_, surface.vertices);
         std::array<float, 3> low = surface.vertices.front(), high = low;
         for (const auto& v : surface.vertices)
             for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -312,46 +262,17 @@ class GltfWriter {
         bounds.minValues.assign(low.begin(), low.end());
         bounds.maxValues.assign(high.begin(), high.end());
         primitive.attributes["POSITION"] = positions;
-        primitive.attributes["NORMAL"] = vectors(surface.normals, TINYGLTF_TYPE_VEC3);
+        primitive.attributes["NORMAL"] = add_vectors(model_, surface.normals);
         if (!surface.uv.empty()) {
             std::vector<std::array<float, 2>> uv = surface.uv; // v downwards
             for (auto& point : uv)
                 point[1] = 1 - point[1];
-            primitive.attributes["TEXCOORD_0"] = vectors(uv, TINYGLTF_TYPE_VEC2);
+            primitive.attributes["TEXCOORD_0"] = add_vectors(model_, uv);
         }
-        if (surface.coloured) {
-            std::vector<std::uint16_t> colours; // linear
-            for (const Rgb& rgb : surface.colours) {
-                for (int i = 0; i < 3; ++i)
-                    colours.push_back(static_cast<std::uint16_t>(std::lround(65535 * rgb[i])));
-                colours.push_back(65535);
-            }
-            const int colour =
-                accessor(view_of(colours, TINYGLTF_TARGET_ARRAY_BUFFER), surface.colours.size(),
-                         TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4);
-            model_.accessors[static_cast<std::size_t>(colour)].normalized = true;
-            primitive.attributes["COLOR_0"] = colour;
-        }
-        primitive.indices = indices_of(surface);
+        if (surface.coloured) primitive.attributes["COLOR_0"] = add_colours(model_, surface.colours);
+        primitive.indices = add_corners(model_, surface.triangles, surface.vertices.size());
         primitive.material = material_of(surface);
         return primitive;
-    }
-
-    int indices_of(const GroupSurface& surface) {
-        const std::size_t count = 3 * surface.triangles.size();
-        if (surface.vertices.size() < 65535) {
-            std::vector<std::uint16_t> small;
-            for (const auto& t : surface.triangles)
-                for (const std::uint32_t corner : t)
-                    small.push_back(static_cast<std::uint16_t>(corner));
-            return accessor(view_of(small, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER), count,
-                            TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR);
-        }
-        std::vector<std::uint32_t> large;
-        for (const auto& t : surface.triangles)
-            large.insert(large.end(), t.begin(), t.end());
-        return accessor(view_of(large, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER), count,
-                        TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
     }
 
     int material_of(const GroupSurface& surface) {
@@ -378,25 +299,15 @@ class GltfWriter {
             const Rgb light = look.emission * material.rgb;
             const double most = std::max({light.r, light.g, light.b, 1.0});
             made.emissiveFactor = {light.r / most, light.g / most, light.b / most};
-            if (most > 1) {
-                GltfObject strength;
-                strength["emissiveStrength"] = tinygltf::Value(most);
-                made.extensions["KHR_materials_emissive_strength"] = tinygltf::Value(strength);
-                uses("KHR_materials_emissive_strength");
-            }
+            if (most > 1)
+                extend(made.extensions, "KHR_materials_emissive_strength",
+                       {{"emissiveStrength", tinygltf::Value(most)}});
         }
-        if (look.transmission > 0) {
-            GltfObject transmission;
-            transmission["transmissionFactor"] = tinygltf::Value(look.transmission);
-            made.extensions["KHR_materials_transmission"] = tinygltf::Value(transmission);
-            uses("KHR_materials_transmission");
-        }
-        if (look.transmission > 0 || material.has_coat()) {
-            GltfObject ior;
-            ior["ior"] = tinygltf::Value(look.ior);
-            made.extensions["KHR_materials_ior"] = tinygltf::Value(ior);
-            uses("KHR_materials_ior");
-        }
+        if (look.transmission > 0)
+            extend(made.extensions, "KHR_materials_transmission",
+                   {{"transmissionFactor", tinygltf::Value(look.transmission)}});
+        if (look.transmission > 0 || material.has_coat())
+            extend(made.extensions, "KHR_materials_ior", {{"ior", tinygltf::Value(look.ior)}});
         if (!material.texture.empty()) {
             pbr.baseColorFactor = {1, 1, 1, look.opacity};
             pbr.baseColorTexture.index = texture_of(*surface.material);
@@ -419,8 +330,7 @@ class GltfWriter {
         if (base.baseColorTexture.index >= 0)
             diffuse["diffuseTransmissionColorTexture"] =
                 tinygltf::Value(GltfObject{{"index", tinygltf::Value(base.baseColorTexture.index)}});
-        made.extensions["KHR_materials_diffuse_transmission"] = tinygltf::Value(diffuse);
-        uses("KHR_materials_diffuse_transmission");
+        extend(made.extensions, "KHR_materials_diffuse_transmission", std::move(diffuse));
     }
 
     int texture_of(MaterialId material) {
@@ -430,11 +340,11 @@ class GltfWriter {
         tinygltf::Image image;
         image.name = PictureCopies::stem(scene_.materials[material]);
         image.mimeType = "image/png";
-        image.bufferView = view_of(pictures_.png(material), 0);
-        model_.images.push_back(std::move(image));
+        const std::vector<unsigned char> png = pictures_.png(material);
+        image.bufferView = add_view(model_, std::as_bytes(std::span(png)), 0);
         tinygltf::Texture texture;
-        texture.source = static_cast<int>(model_.images.size()) - 1;
-        model_.textures.push_back(texture);
+        texture.source = add_to(model_.images, std::move(image));
+        model_.textures.push_back(std::move(texture));
         return known->second;
     }
 
@@ -469,10 +379,9 @@ class GltfWriter {
             camera.perspective.znear = std::max(1e-3 * far, 0.05 * (away - radius) * metres);
             camera.perspective.zfar = far;
         }
-        model_.cameras.push_back(std::move(camera));
         tinygltf::Node node;
         node.name = "camera";
-        node.camera = 0;
+        node.camera = add_to(model_.cameras, std::move(camera));
         add_top(std::move(node), {Mat3(eye.right, eye.up, -eye.direction), metres * eye.location});
     }
 
@@ -494,10 +403,8 @@ class GltfWriter {
             const Vec3 right = glm::normalize(glm::cross(aside, back));
             tinygltf::Node node;
             node.name = made.name;
-            GltfObject reference;
-            reference["light"] = tinygltf::Value(static_cast<int>(model_.lights.size()));
-            node.extensions["KHR_lights_punctual"] = tinygltf::Value(reference);
-            model_.lights.push_back(std::move(made));
+            node.extensions["KHR_lights_punctual"] = tinygltf::Value(
+                GltfObject{{"light", tinygltf::Value(add_to(model_.lights, std::move(made)))}});
             add_top(std::move(node), {Mat3(right, glm::cross(back, right), back),
                                       light.sun ? Vec3(0.0) : metres * light.location});
         }

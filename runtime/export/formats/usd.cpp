@@ -12,9 +12,9 @@
 #include "compiler/unfolded/levels.h"
 #include "compiler/unfolded/looks.h"
 #include "runtime/export/formats/flat_files.h"
-#include "runtime/export/formats/group_mesh.h"
 #include "runtime/export/formats/pbr.h"
 #include "runtime/export/formats/picture_copies.h"
+#include "runtime/export/formats/renderer_scene.h"
 #include "runtime/export/formats/rigid_parts.h"
 #include "runtime/export/formats/usd_text.h"
 #include "runtime/export/united_facets.h"
@@ -41,11 +41,6 @@ std::string usd_word(std::string_view name) {
         text += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
     if (text.empty() || std::isdigit(static_cast<unsigned char>(text[0]))) text = "n" + text;
     return text;
-}
-
-/// A name that USD takes, and no other prim has: numbered.
-std::string usd_name(std::string_view name, std::size_t number) {
-    return fmt::format("{}_{}", usd_word(name), number);
 }
 
 std::string vector_text(Vec3 v) {
@@ -110,12 +105,19 @@ class UsdWriter {
     }
 
     std::string path(SceneId id) const { return "/prototypes/" + name(id); }
-    std::string name(SceneId id) const { return usd_name(scene_.nodes[id].name, id); }
+    /// The number tells it from all other prims.
+    std::string name(SceneId id) const { return fmt::format("{}_{}", usd_word(scene_.nodes[id].name), id); }
 
-    /// Whoever references a prototype says only where it lies.
-    void at_origin() {
-        file_.print("  matrix4d xformOp:transform = {}\n", matrix_text({}));
+    void placed(const Affine& place) {
+        file_.print("  matrix4d xformOp:transform = {}\n", matrix_text(place));
         file_.text("  uniform token[] xformOpOrder = [\"xformOp:transform\"]\n");
+    }
+
+    /// Begins a prototype. Whoever references it says only where it lies.
+    void prototype(SceneId id) {
+        ++prototypes_;
+        file_.print(" class Xform \"{}\"\n {{\n", name(id));
+        placed({});
     }
 
     void instance(std::string_view name, const ScenePart& part) {
@@ -131,9 +133,7 @@ class UsdWriter {
 
     void unite(SceneId id) {
         const SceneNode& node = scene_.nodes[id];
-        ++prototypes_;
-        file_.print(" class Xform \"{}\"\n {{\n", name(id));
-        at_origin();
+        prototype(id);
         std::vector<std::size_t> points;
         std::vector<MoveTurnScale> places;
         if (node.parts.size() >= fewest_points)
@@ -202,11 +202,8 @@ class UsdWriter {
 
     void leaf(SceneId id) {
         const SceneNode& node = scene_.nodes[id];
-        ++prototypes_;
         const ShapeMesh& mesh = meshes_.of(*node.shape, node.look);
-        const Rgb colour = node.look.colour();
-        file_.print(" class Xform \"{}\"\n {{\n", name(id));
-        at_origin();
+        prototype(id);
         file_.text("  def Mesh \"mesh\"");
         // Looks of one shape share its mesh.
         const auto [known, is_new] = mesh_of_.try_emplace(&mesh, id);
@@ -219,7 +216,7 @@ class UsdWriter {
                         path(known->second));
         }
         if (!node.look.colourless)
-            file_.print("   color3f[] primvars:displayColor = [{}]\n", vector_text(colour));
+            file_.print("   color3f[] primvars:displayColor = [{}]\n", vector_text(node.look.colour()));
         const bool has_material = node.look.material.has_value();
         if (has_material)
             file_.print("   rel material:binding = <{}/{}>\n", path(id), material_name(*node.look.material));
@@ -344,11 +341,6 @@ class UsdWriter {
         file_.text("  }\n");
     }
 
-    void placed(const Affine& place) {
-        file_.print("  matrix4d xformOp:transform = {}\n", matrix_text(place));
-        file_.text("  uniform token[] xformOpOrder = [\"xformOp:transform\"]\n }\n");
-    }
-
     void camera() {
         const View& view = job_.view;
         const Camera& eye = view.camera;
@@ -368,6 +360,7 @@ class UsdWriter {
         file_.print("  float2 clippingRange = ({}, {})\n", float_text(1e-3 * (away + radius)),
                     float_text(4 * (away + radius)));
         placed({Mat3(eye.right, eye.up, -eye.direction), eye.location});
+        file_.text(" }\n");
     }
 
     void lights() {
@@ -401,6 +394,7 @@ class UsdWriter {
             const Vec3 right =
                 light.is_area() ? glm::normalize(light.a) : glm::normalize(glm::cross(aside, back));
             placed({Mat3(right, glm::cross(back, right), back), light.sun ? Vec3(0.0) : light.location});
+            file_.text(" }\n");
         }
         if (job_.view.sky_light) dome(*job_.view.sky_light);
     }
@@ -410,13 +404,11 @@ class UsdWriter {
     double intensity_of(const Light& light) const {
         constexpr double pi = std::numbers::pi;
         if (light.sun) return pi;
-        const Vec3 middle = scene_.bounds.empty() ? Vec3(0.0) : scene_.bounds.centre();
-        const Vec3 away = light.location - middle;
         const double sides = glm::length(light.a) * glm::length(light.b);
         const double area = !light.is_area() ? pi * point_radius * point_radius
                             : light.round    ? pi * sides
                                              : 4 * sides;
-        return pi * glm::dot(away, away) / area;
+        return pi * lamp_at_model(scene_, light) / area;
     }
 
     /// The middle of a picture lies towards +z in USD, and its right towards -x.
@@ -431,6 +423,7 @@ class UsdWriter {
                     vector_text(Vec3(sky.brightness)), usd_asset(pictures_.sky(*sky.picture)));
         const Mat3 picture_from_dome(Vec3(0, 0, -1), Vec3(0, 1, 0), Vec3(1, 0, 0));
         placed({glm::transpose(sky.picture_from_world) * picture_from_dome, Vec3(0.0)});
+        file_.text(" }\n");
     }
 
     const ExportJob& job_;

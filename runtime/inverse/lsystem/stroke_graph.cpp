@@ -8,22 +8,15 @@
 
 #include <fmt/format.h>
 
-#include "compiler/support/number.h"
 #include "runtime/inverse/lsystem/place_grid.h"
+#include "runtime/inverse/lsystem/stroke_angle.h"
 
 namespace graftal {
 
 namespace {
 
-constexpr std::int32_t most_directions = 360;
 constexpr std::size_t most_length_classes = 40;
-constexpr int most_turn_units = 24;
-/// Sizes of turns. Multiples of one angle have far fewer.
-constexpr std::size_t most_turns = 1000;
 constexpr double most_cut_strokes = 2'000'000;
-constexpr double least_angle_deg = 1;
-constexpr double fine_deg = 0.02; ///< between turns that are equal where directions go round many times
-constexpr std::size_t most_followed_angles = 100;
 
 double stroke_length(const Stroke& stroke) {
     return std::hypot(stroke.to.x - stroke.from.x, stroke.to.y - stroke.from.y);
@@ -32,51 +25,6 @@ double stroke_length(const Stroke& stroke) {
 double direction_deg(const Stroke& stroke) {
     return std::atan2(stroke.to.y - stroke.from.y, stroke.to.x - stroke.from.x) * 180 / std::numbers::pi;
 }
-
-/// An angle in (-180, 180].
-double wrapped_deg(double angle) {
-    angle = std::fmod(angle, 360);
-    return angle > 180 ? angle - 360 : angle <= -180 ? angle + 360 : angle;
-}
-
-/// Means of groups of sorted values that follow each other by at most `apart`, with their numbers.
-std::vector<std::pair<double, std::uint64_t>> value_groups(std::vector<double> values, double apart) {
-    std::ranges::sort(values);
-    std::vector<std::pair<double, std::uint64_t>> groups;
-    double last = 0;
-    for (const double value : values) {
-        if (groups.empty() || value - last > apart) groups.emplace_back(0, 0);
-        groups.back().first += value;
-        ++groups.back().second;
-        last = value;
-    }
-    for (auto& [sum, count] : groups)
-        sum /= static_cast<double>(count);
-    return groups;
-}
-
-/// An angle by whose multiples all directions differ.
-struct AngleGrid {
-    double angle_deg = 90;
-    std::int32_t directions = 4; ///< in a full circle, or 0
-
-    /// The multiple that is nearest to a difference of directions.
-    std::int32_t units(double deg) const {
-        if (directions > 0) {
-            const auto whole = static_cast<std::int32_t>(std::llround(wrapped_deg(deg) * directions / 360));
-            return 2 * whole <= -directions ? whole + directions : whole;
-        }
-        std::int32_t best = 0;
-        for (std::int32_t k = 1; k <= most_turn_units; ++k)
-            for (const std::int32_t signed_k : {k, -k})
-                if (error_at(deg, signed_k) < error_at(deg, best)) best = signed_k;
-        return best;
-    }
-    double error(double deg) const { return error_at(deg, units(deg)); }
-
-  private:
-    double error_at(double deg, std::int32_t k) const { return std::abs(wrapped_deg(deg - k * angle_deg)); }
-};
 
 } // namespace
 
@@ -94,14 +42,16 @@ class StrokeGraphBuilder {
         graph.first_deg = direction_deg(strokes_.front());
         for (const Stroke& stroke : strokes_)
             degrees_.push_back(wrapped_deg(direction_deg(stroke) - graph.first_deg));
-        AngleGrid grid;
-        if (!find_angle(graph, noise_deg, grid)) {
+        const auto follow = [&](double angle_deg) { return follow_turns(graph, angle_deg); };
+        const std::optional<AngleGrid> grid =
+            find_angle(degrees_, joint_turns(graph), noise_deg, follow, meter_);
+        if (!grid) {
             problem = "no angle has all its directions as multiples";
             return false;
         }
-        graph.angle_deg = grid.angle_deg;
-        graph.directions = grid.directions;
-        link(graph, classes, grid);
+        graph.angle_deg = grid->angle_deg;
+        graph.directions = grid->directions;
+        link(graph, classes, *grid);
         find_starts(graph);
         if (graph.starts.empty()) problem = "its lines do not all hang together";
         return !graph.starts.empty();
@@ -114,6 +64,9 @@ class StrokeGraphBuilder {
             ends_.push_back(place_of(graph, stroke.to));
         }
     }
+
+    std::uint32_t begin_of(std::size_t stroke) const { return ends_[2 * stroke]; }
+    std::uint32_t end_of(std::size_t stroke) const { return ends_[2 * stroke + 1]; }
 
     /// The oldest place within reach: the answer for a point stays the same when more places come.
     std::optional<std::uint32_t> place_at(const StrokeGraph& graph, Vec2 point) const {
@@ -138,67 +91,12 @@ class StrokeGraphBuilder {
         constexpr std::size_t most_at_a_place = 6;
         std::vector<std::vector<std::uint32_t>> leaving(graph.places.size());
         for (std::uint32_t i = 0; i < strokes_.size(); ++i)
-            if (leaving[ends_[std::size_t{2} * i]].size() < most_at_a_place)
-                leaving[ends_[std::size_t{2} * i]].push_back(i);
+            if (leaving[begin_of(i)].size() < most_at_a_place) leaving[begin_of(i)].push_back(i);
         std::vector<double> turns;
         for (std::uint32_t i = 0; i < strokes_.size(); ++i)
-            for (const std::uint32_t next : leaving[ends_[std::size_t{2} * i + 1]])
+            for (const std::uint32_t next : leaving[end_of(i)])
                 turns.push_back(std::abs(wrapped_deg(degrees_[next] - degrees_[i])));
         return turns;
-    }
-
-    /// The angle of which the turns are the smallest multiples.
-    bool find_angle(const StrokeGraph& graph, double noise_deg, AngleGrid& best) {
-        const std::vector<double> found = distinct_degrees();
-        std::vector<double> joints = joint_turns(graph);
-        std::erase_if(joints, [&](double turn) { return turn < 0.5 * least_angle_deg; });
-        if (joints.empty()) // all in line, or no strokes meet
-            for (const double direction : found)
-                if (std::abs(direction) >= least_angle_deg) joints.push_back(std::abs(direction));
-        const auto turns = value_groups(joints, noise_deg);
-        if (turns.size() > most_turns) return false;
-        double least = HUGE_VAL;
-        for (const double angle : angle_candidates(turns, std::max(least_angle_deg, 5 * noise_deg)))
-            for (const bool closed : {true, false}) {
-                AngleGrid grid{angle, 0};
-                const double circle = 360 / angle, whole = std::round(circle);
-                if (std::abs(circle - whole) < 0.12 && whole <= most_directions)
-                    grid.directions = static_cast<std::int32_t>(whole);
-                if (closed != (grid.directions > 0)) continue;
-                meter_.add(found.size());
-                const double allowed = closed ? std::max(noise_deg, 0.1 * angle) : noise_deg;
-                const bool fits = std::ranges::all_of(
-                    found, [&](double direction) { return grid.error(direction) <= allowed; });
-                if (!fits) continue;
-                double cost = 0;
-                std::uint64_t count = 0;
-                for (const auto& [turn, number] : turns) {
-                    const double units = std::round(turn / angle);
-                    const bool direct = std::abs(turn - units * angle) <= allowed;
-                    cost += static_cast<double>(number) * (direct ? units : 10); // 10: by going round
-                    count += number;
-                }
-                cost /= static_cast<double>(std::max<std::uint64_t>(count, 1));
-                if (cost < least - 1e-9) {
-                    least = cost;
-                    best = grid;
-                    best.angle_deg = refined(joints, grid);
-                }
-            }
-        if (least < HUGE_VAL) return true;
-        // Joints that went round lie near others, so that groups of a finer width tell the angle.
-        auto fine = value_groups(joints, fine_deg);
-        fine.resize(std::min(fine.size(), most_followed_angles));
-        for (const auto& turn : fine) {
-            std::vector<double> direct = joints;
-            std::erase_if(
-                direct, [&](double joint) { return std::abs(std::remainder(joint, turn.first)) > fine_deg; });
-            const double angle = refined(direct, {turn.first, 0});
-            if (!follow_turns(graph, angle)) continue;
-            best = {angle, 0};
-            return true;
-        }
-        return false;
     }
 
     /// Finds directions that go round many times, from stroke to stroke; false if they are no multiples.
@@ -207,18 +105,18 @@ class StrokeGraphBuilder {
         // Strokes of each place, until they are seen: else a place of many would be gone through for each.
         std::vector<std::vector<std::uint32_t>> unseen(graph.places.size());
         for (std::uint32_t i = 1; i < strokes_.size(); ++i)
-            for (const std::uint32_t place : {ends_[std::size_t{2} * i], ends_[std::size_t{2} * i + 1]})
+            for (const std::uint32_t place : {begin_of(i), end_of(i)})
                 unseen[place].push_back(i);
         std::vector<bool> seen(strokes_.size());
         followed_.assign(strokes_.size(), 0);
         const auto next_to = [&](std::uint32_t at, const auto& next) {
-            for (const std::uint32_t place : {ends_[std::size_t{2} * at], ends_[std::size_t{2} * at + 1]}) {
+            for (const std::uint32_t place : {begin_of(at), end_of(at)}) {
                 meter_.add(unseen[place].size());
                 std::erase_if(unseen[place], [&](std::uint32_t other) {
                     if (seen[other]) return true;
                     const double turn = wrapped_deg(degrees_[other] - degrees_[at]);
                     const std::int32_t units = AngleGrid{angle_deg, 0}.units(turn);
-                    if (std::abs(wrapped_deg(turn - units * angle_deg)) > fine_deg) return false;
+                    if (std::abs(wrapped_deg(turn - units * angle_deg)) > fine_turn_deg) return false;
                     followed_[other] = followed_[at] + units;
                     next(other);
                     return true;
@@ -228,59 +126,6 @@ class StrokeGraphBuilder {
         if (visit_from(0, seen, next_to) == strokes_.size()) return true;
         followed_.clear();
         return false;
-    }
-
-    /// Directions, to a twentieth of a degree.
-    std::vector<double> distinct_degrees() const {
-        std::vector<double> distinct;
-        for (const double degrees : degrees_)
-            distinct.push_back(std::round(degrees * 20) / 20);
-        std::ranges::sort(distinct);
-        distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-        return distinct;
-    }
-
-    static std::vector<double> angle_candidates(const std::vector<std::pair<double, std::uint64_t>>& turns,
-                                                double least_deg) {
-        std::vector<double> candidates = {90};
-        for (const auto& turn : turns) {
-            for (const double part : {1.0, 2.0, 3.0, 4.0})
-                candidates.push_back(turn.first / part);
-            for (const auto& other : turns)
-                candidates.push_back(std::abs(turn.first - other.first));
-        }
-        std::erase_if(candidates, [&](double angle) { return angle < least_deg; });
-        std::ranges::sort(candidates);
-        const auto same = [](double a, double b) { return std::abs(a - b) < 1e-6; };
-        candidates.erase(std::unique(candidates.begin(), candidates.end(), same), candidates.end());
-        if (candidates.size() > 400) candidates.resize(400);
-        return candidates;
-    }
-
-    /// The angle by the mean of all turns, with as few digits as they tell.
-    double refined(const std::vector<double>& turns, const AngleGrid& grid) {
-        meter_.add(turns.size());
-        double sum = 0, weight = 0, squares = 0;
-        for (const double turn : turns) {
-            const double units = std::round(turn / grid.angle_deg);
-            if (std::abs(turn - units * grid.angle_deg) > 0.1 * grid.angle_deg) continue;
-            sum += turn * units;
-            weight += units * units;
-        }
-        if (weight == 0) return grid.angle_deg;
-        const double mean = sum / weight;
-        for (const double turn : turns)
-            squares += std::pow(std::remainder(turn, mean), 2);
-        const double doubt = std::max(1e-5, 3 * std::sqrt(squares) / static_cast<double>(turns.size()));
-        for (int digits = 1; digits < 12; ++digits) {
-            std::string text;
-            append_number(text, mean, digits);
-            const double rounded = parse_number(text).value_or(mean);
-            if (std::abs(rounded - mean) < doubt) return rounded;
-            if (digits >= 3 && grid.directions > 0 && std::abs(360.0 / grid.directions - mean) < doubt)
-                return 360.0 / grid.directions;
-        }
-        return mean;
     }
 
     void link(StrokeGraph& graph, const std::vector<std::uint8_t>& classes, const AngleGrid& grid) {
@@ -293,8 +138,7 @@ class StrokeGraphBuilder {
         std::vector<Link> links;
         for (std::uint32_t i = 0; i < strokes_.size(); ++i) {
             const std::int32_t direction = followed_.empty() ? grid.units(degrees_[i]) : followed_[i];
-            links.push_back(
-                {ends_[std::size_t{2} * i], ends_[std::size_t{2} * i + 1], direction, classes[i]});
+            links.push_back({begin_of(i), end_of(i), direction, classes[i]});
         }
         turn_by_mean(graph, links);
         std::ranges::sort(links, {}, [](const Link& link) {
@@ -363,9 +207,9 @@ class StrokeGraphBuilder {
         std::vector<std::int64_t> surplus(graph.places.size());
         std::vector<std::vector<std::uint32_t>> before(graph.places.size());
         for (std::size_t i = 0; i < strokes_.size(); ++i) {
-            ++surplus[ends_[std::size_t{2} * i]];
-            --surplus[ends_[std::size_t{2} * i + 1]];
-            before[ends_[std::size_t{2} * i + 1]].push_back(ends_[std::size_t{2} * i]);
+            ++surplus[begin_of(i)];
+            --surplus[end_of(i)];
+            before[end_of(i)].push_back(begin_of(i));
         }
         std::int64_t sum = 0;
         for (const std::int64_t each : surplus)

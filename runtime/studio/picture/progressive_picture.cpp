@@ -7,6 +7,7 @@
 #include "runtime/image/develop.h"
 #include "runtime/studio/picture/clock.h"
 #include "runtime/trace/denoise.h"
+#include "runtime/trace/picture_tracer.h"
 
 namespace graftal {
 

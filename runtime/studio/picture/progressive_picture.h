@@ -10,6 +10,8 @@
 #include "compiler/support/workers.h"
 #include "runtime/fit/fit_picture.h"
 #include "runtime/trace/noise_meter.h"
+#include "runtime/trace/pixel_features.h"
+#include "runtime/trace/tile.h"
 
 namespace graftal {
 

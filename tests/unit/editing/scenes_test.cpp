@@ -11,7 +11,7 @@
 #include "compiler/editing/format.h"
 #include "compiler/editing/hover.h"
 #include "compiler/editing/maps/maps.h"
-#include "compiler/editing/names.h"
+#include "compiler/editing/names/names.h"
 #include "compiler/editing/rename.h"
 #include "compiler/languages/lower.h"
 #include "compiler/support/counter_random.h"

@@ -9,7 +9,7 @@
 
 #include "compiler/scene/scene.h"
 #include "compiler/zoom/magnification.h"
-#include "runtime/trace/picture_tracer.h"
+#include "runtime/trace/tile.h"
 
 namespace graftal {
 

@@ -1,53 +1,15 @@
-#include "compiler/editing/names.h"
+#include "compiler/editing/names/names.h"
 
 #include <algorithm>
-#include <map>
-#include <tuple>
 #include <utility>
 
+#include "compiler/editing/names/name_table.h"
 #include "compiler/lsys/parse/commands.h"
 #include "compiler/syntax/lexer.h"
 
 namespace graftal {
 
 namespace {
-
-/// Kinds of names that are told apart by their places: a map and a `let` may have one name.
-enum class Space : std::uint8_t { value, function, module, label, material, map, object };
-
-Space space_of(NameKind kind) {
-    switch (kind) {
-    case NameKind::let:
-    case NameKind::inner:
-    case NameKind::parameter:
-    case NameKind::variable:
-    case NameKind::local:
-        return Space::value;
-    case NameKind::table:
-    case NameKind::function:
-        return Space::function;
-    case NameKind::module:
-        return Space::module;
-    case NameKind::label:
-        return Space::label;
-    case NameKind::material:
-        return Space::material;
-    case NameKind::map:
-        return Space::map;
-    case NameKind::block:
-    case NameKind::object:
-    case NameKind::model:
-        return Space::object;
-    }
-    return Space::value;
-}
-
-/// A part of the text in which names are known, in a chain up to the whole text.
-struct Scope {
-    const Scope* outer = nullptr;
-    Span span;
-    std::map<std::pair<Space, std::string>, std::size_t, std::less<>> things = {};
-};
 
 /// Walks over a tree, and notes the names that it meets.
 class Collector {
@@ -60,35 +22,15 @@ class Collector {
         if (const LsysFile* tree = document_.lsys()) file(*tree);
         if (const RifsFile* tree = document_.rifs()) file(*tree);
         if (const InstModule* tree = document_.inst()) file(*tree);
-        return settled();
+        return std::move(names_).settled();
     }
 
   private:
-    void define(Scope& scope, NameKind kind, Name name, Span whole = {}) {
-        const auto [place, fresh] =
-            scope.things.try_emplace({space_of(kind), std::string(name.text)}, things_.size());
-        if (fresh)
-            things_.push_back(
-                {kind, std::string(name.text), scope.span, {}, {}, whole.known() ? whole : name.span});
-        things_[place->second].definitions.push_back(name.span);
-    }
-
-    void use(const Scope& scope, Space space, std::string_view name, Span span) {
-        const std::pair<Space, std::string> key{space, name};
-        for (const Scope* at = &scope; at; at = at->outer)
-            if (const auto found = at->things.find(key); found != at->things.end()) {
-                things_[found->second].uses.push_back(span);
-                return;
-            }
-        free_[key].push_back(span);
-    }
-    void use(const Scope& scope, Space space, Name name) { use(scope, space, name.text, name.span); }
-
     /// A name with dots is that of a used model, and of a part in it.
-    void use_object(const Scope& scope, std::string_view name, Span span) {
+    void use_object(const NameScope& scope, std::string_view name, Span span) {
         const std::size_t dot = name.find('.');
         span.end = span.begin + static_cast<std::uint32_t>(std::min(dot, name.size()));
-        use(scope, Space::object, name.substr(0, dot), span);
+        names_.use(scope, NameSpace::object, name.substr(0, dot), span);
     }
 
     /// The place of an expression's own word: spans include the parentheses around.
@@ -103,22 +45,22 @@ class Collector {
         return span;
     }
 
-    void expression(const Scope& scope, const Expression& value) {
+    void expression(const NameScope& scope, const Expression& value) {
         if (value.kind == Expression::Kind::name || value.kind == Expression::Kind::element)
-            use(scope, Space::value, value.text, word(value));
+            names_.use(scope, NameSpace::value, value.text, word(value));
         else if (value.kind == Expression::Kind::call)
-            use(scope, Space::function, value.text, word(value));
+            names_.use(scope, NameSpace::function, value.text, word(value));
         for (const Expression& operand : value.operands)
             expression(scope, operand);
     }
-    void expression(const Scope& scope, const std::optional<Expression>& value) {
+    void expression(const NameScope& scope, const std::optional<Expression>& value) {
         if (value) expression(scope, *value);
     }
-    void expressions(const Scope& scope, const std::vector<Expression>& values) {
+    void expressions(const NameScope& scope, const std::vector<Expression>& values) {
         for (const Expression& value : values)
             expression(scope, value);
     }
-    void transforms(const Scope& scope, const std::vector<TransformLine>& lines) {
+    void transforms(const NameScope& scope, const std::vector<TransformLine>& lines) {
         for (const TransformLine& line : lines)
             expressions(scope, line.numbers);
     }
@@ -127,33 +69,33 @@ class Collector {
 
     void models(const std::vector<UseStatement>& uses) {
         for (const UseStatement& use : uses)
-            define(file_, NameKind::model, use.name, join(use.name.span, use.path_span));
+            names_.define(file_, NameKind::model, use.name, join(use.name.span, use.path_span));
     }
 
     /// Materials first: instances name those that stand below.
-    void statements(Scope& scope, const std::vector<SceneStatement>& list) {
+    void statements(NameScope& scope, const std::vector<SceneStatement>& list) {
         for (const SceneStatement& statement : list)
             if (statement.kind == SceneStatement::Kind::material && !statement.name.empty())
-                define(scope, NameKind::material, {document_.text(statement.span), statement.span});
+                names_.define(scope, NameKind::material, {document_.text(statement.span), statement.span});
         for (const SceneStatement& statement : list)
             fields(scope, statement);
     }
 
-    void fields(Scope& scope, const SceneStatement& statement) {
+    void fields(NameScope& scope, const SceneStatement& statement) {
         const bool inner = statement.kind == SceneStatement::Kind::inner;
         const bool let = inner || statement.kind == SceneStatement::Kind::let;
         for (const SceneField& field : statement.fields) {
             expressions(scope, field.values);
             if (statement.kind == SceneStatement::Kind::preset)
-                use(scope, Space::value, document_.text(field.span), field.span);
+                names_.use(scope, NameSpace::value, document_.text(field.span), field.span);
             const bool names_material = field.keyword == "material" || field.keyword == "from";
             if (names_material && field.name_span.known())
-                use(scope, Space::material, field.name, field.name_span);
+                names_.use(scope, NameSpace::material, field.name, field.name_span);
             if (!let) continue;
             Span whole = field.span;
             if (!field.values.empty()) whole = join(whole, field.values.back().span);
-            define(scope, inner ? NameKind::inner : NameKind::let, {document_.text(field.span), field.span},
-                   whole);
+            names_.define(scope, inner ? NameKind::inner : NameKind::let,
+                          {document_.text(field.span), field.span}, whole);
         }
     }
 
@@ -165,10 +107,10 @@ class Collector {
     template<typename Tree> void blocks(const Tree& tree) {
         models(tree.uses);
         for (const auto& block : tree.blocks)
-            define(file_, NameKind::block, block.name);
+            names_.define(file_, NameKind::block, block.name);
         statements(file_, tree.statements);
         for (std::size_t i = 0; i < tree.blocks.size(); ++i) {
-            Scope scope{&file_, span_between(tree.blocks, i)};
+            NameScope scope{&file_, span_between(tree.blocks, i)};
             block(scope, tree.blocks[i]);
         }
     }
@@ -179,14 +121,14 @@ class Collector {
         return {0, blocks[i].name.span.begin, std::max(end, blocks[i].name.span.end)};
     }
 
-    void block(Scope& scope, const LsysBlock& block) {
+    void block(NameScope& scope, const LsysBlock& block) {
         statements(scope, block.lets);
         for (const Name& table : block.tables)
-            define(scope, NameKind::table, table);
+            names_.define(scope, NameKind::table, table);
         for (const LsysVariable& variable : block.variables) {
             expressions(scope, variable.sizes);
             expressions(scope, variable.values);
-            define(scope, NameKind::variable, variable.name);
+            names_.define(scope, NameKind::variable, variable.name);
         }
         modules(scope, block);
         settings(scope, block);
@@ -199,25 +141,25 @@ class Collector {
     }
 
     /// The first production of a module says more about it than the list of names.
-    void modules(Scope& scope, const LsysBlock& block) {
+    void modules(NameScope& scope, const LsysBlock& block) {
         for (const auto* productions : {&block.productions, &block.decompose, &block.interpret})
             for (const LsysProduction& production : *productions)
-                define(scope, NameKind::module, symbol(production.predecessor),
-                       join(production.span, production.successor.modules.empty()
-                                                 ? Span()
-                                                 : production.successor.modules.back().span));
+                names_.define(scope, NameKind::module, symbol(production.predecessor),
+                              join(production.span, production.successor.modules.empty()
+                                                        ? Span()
+                                                        : production.successor.modules.back().span));
         for (const Name& name : block.modules)
-            define(scope, NameKind::module, name);
+            names_.define(scope, NameKind::module, name);
     }
 
-    void settings(const Scope& scope, const LsysBlock& block) {
+    void settings(const NameScope& scope, const LsysBlock& block) {
         for (const auto* value : {&block.angle, &block.step, &block.width, &block.thickness, &block.thinnest,
                                   &block.taper, &block.skin, &block.seed})
             if (*value) expression(scope, (*value)->value);
         if (block.steps) expression(scope, block.steps->value);
         if (block.filter)
             for (const Name& name : block.filter->symbols)
-                use(scope, Space::module, name);
+                names_.use(scope, NameSpace::module, name);
         for (const LsysDirection& tropism : block.tropisms) {
             expressions(scope, tropism.direction);
             expression(scope, tropism.angle);
@@ -225,36 +167,36 @@ class Collector {
         for (const LsysEnvironment& environment : block.environment)
             expressions(scope, environment.numbers);
         for (const Name& colour : block.colors)
-            use(scope, Space::material, colour);
+            names_.use(scope, NameSpace::material, colour);
     }
 
     Name symbol(const LsysFormal& formal) const { return {formal.symbol, document_.span_of(formal.symbol)}; }
 
-    void string(const Scope& scope, const LsysString& string) {
+    void string(const NameScope& scope, const LsysString& string) {
         for (const LsysModule& module : string.modules) {
-            use(scope, Space::module, module.symbol, document_.span_of(module.symbol));
+            names_.use(scope, NameSpace::module, module.symbol, document_.span_of(module.symbol));
             if (!module.model.empty()) use_object(scope, module.model, document_.span_of(module.model));
             expressions(scope, module.parameters);
         }
     }
 
-    void rule(const Scope& outer, const LsysProduction& production) {
+    void rule(const NameScope& outer, const LsysProduction& production) {
         Span span = production.span;
         if (!production.successor.modules.empty())
             span = join(span, production.successor.modules.back().span);
         if (production.probability) span = join(span, production.probability->span);
-        Scope scope{&outer, span};
-        if (!production.label.text.empty()) define(scope, NameKind::label, production.label);
+        NameScope scope{&outer, span};
+        if (!production.label.text.empty()) names_.define(scope, NameKind::label, production.label);
         for (const auto* formals : {&production.left, &production.following, &production.right})
             for (const LsysFormal& formal : *formals)
-                use(outer, Space::module, symbol(formal));
+                names_.use(outer, NameSpace::module, symbol(formal));
         parameters(scope, production.predecessor);
         for (const auto* formals : {&production.left, &production.following, &production.right})
             for (const LsysFormal& formal : *formals)
                 parameters(scope, formal);
         for (const auto& [name, value] : production.locals) {
             expression(scope, value);
-            define(scope, NameKind::local, name);
+            names_.define(scope, NameKind::local, name);
         }
         for (const auto* commands : {&production.before, &production.after})
             if (*commands) {
@@ -266,21 +208,19 @@ class Collector {
         expression(scope, production.probability);
     }
 
-    void parameters(Scope& scope, const LsysFormal& formal) {
+    void parameters(NameScope& scope, const LsysFormal& formal) {
         for (const Name& name : formal.parameters)
-            define(scope, NameKind::parameter, name);
+            names_.define(scope, NameKind::parameter, name);
     }
 
     /// Names that a block of a production assigns are its own, except variables.
-    void define_assigned(Scope& scope, const std::vector<LsysCommand>& commands) {
+    void define_assigned(NameScope& scope, const std::vector<LsysCommand>& commands) {
         for_each_assignment(commands, [&](const LsysCommand& command) {
-            const std::pair<Space, std::string> key{Space::value, command.target};
-            if (scope.things.contains(key)) return;
-            const auto variable = scope.outer->things.find(key);
-            if (variable != scope.outer->things.end() && things_[variable->second].kind == NameKind::variable)
+            if (scope.things.contains(std::pair{NameSpace::value, std::string(command.target)}) ||
+                names_.is_variable(*scope.outer, command.target))
                 return;
             const Span span = target(command);
-            define(scope, NameKind::local, {document_.text(span), span});
+            names_.define(scope, NameKind::local, {document_.text(span), span});
         });
     }
 
@@ -289,9 +229,9 @@ class Collector {
                 command.span.begin + static_cast<std::uint32_t>(command.target.size())};
     }
 
-    void command_list(const Scope& scope, const std::vector<LsysCommand>& commands) {
+    void command_list(const NameScope& scope, const std::vector<LsysCommand>& commands) {
         for_each_assignment(commands, [&](const LsysCommand& command) {
-            use(scope, Space::value, command.target, target(command));
+            names_.use(scope, NameSpace::value, command.target, target(command));
         });
         for_each_expression(commands, [&](const Expression& value) { expression(scope, value); });
     }
@@ -301,18 +241,18 @@ class Collector {
     void file(const RifsFile& tree) {
         blocks(tree);
         for (std::size_t i = 0; i < tree.orbits.size(); ++i) {
-            define(file_, NameKind::block, tree.orbits[i].name);
-            Scope scope{&file_, span_between(tree.orbits, i)};
+            names_.define(file_, NameKind::block, tree.orbits[i].name);
+            NameScope scope{&file_, span_between(tree.orbits, i)};
             orbit(scope, tree.orbits[i]);
         }
     }
 
-    void look(const Scope& scope, const RifsLook& look) {
+    void look(const NameScope& scope, const RifsLook& look) {
         expressions(scope, look.tint);
-        if (look.material) use(scope, Space::material, *look.material);
+        if (look.material) names_.use(scope, NameSpace::material, *look.material);
     }
 
-    void part(const Scope& scope, const RifsPart& part) {
+    void part(const NameScope& scope, const RifsPart& part) {
         use_object(scope, part.master.text, part.master.span);
         expressions(scope, part.arguments);
         transforms(scope, part.transforms);
@@ -321,55 +261,53 @@ class Collector {
         expression(scope, part.below);
     }
 
-    void block(Scope& scope, const RifsBlock& block) {
+    void block(NameScope& scope, const RifsBlock& block) {
         for (const RifsMap& map : block.maps)
             if (!map.name.text.empty()) {
-                define(scope, NameKind::map, map.name, map.span);
+                names_.define(scope, NameKind::map, map.name, map.span);
             } else { // known by its number only
-                const std::string name = "w" + std::to_string(map.number);
-                scope.things.try_emplace({Space::map, name}, things_.size());
-                things_.push_back({NameKind::map, name, scope.span, {}, {}, map.span});
+                names_.define_nameless(scope, NameKind::map, "w" + std::to_string(map.number), map.span);
             }
         for (const RifsMap& map : block.maps) {
             transforms(scope, map.transforms);
             expressions(scope, map.codes);
             expression(scope, map.probability);
             look(scope, map.look);
-            if (map.from) use(scope, Space::object, *map.from);
+            if (map.from) names_.use(scope, NameSpace::object, *map.from);
             if (map.terminal) part(scope, *map.terminal);
         }
         if (block.follow) {
             for (const RifsEdge& edge : block.follow->edges) {
-                use(scope, Space::map, edge.from);
-                use(scope, Space::map, edge.to);
+                names_.use(scope, NameSpace::map, edge.from);
+                names_.use(scope, NameSpace::map, edge.to);
             }
             expressions(scope, block.follow->expressions);
         }
         for (const Name& name : block.start)
-            use(scope, Space::map, name);
+            names_.use(scope, NameSpace::map, name);
         for (const RifsPart& condensation : block.condense)
             part(scope, condensation);
         if (block.terminal) part(scope, *block.terminal);
     }
 
-    void orbit(Scope& scope, const OrbitBlock& orbit) {
-        const auto lets = [this](Scope& into, const std::vector<OrbitLet>& list, NameKind kind) {
+    void orbit(NameScope& scope, const OrbitBlock& orbit) {
+        const auto lets = [this](NameScope& into, const std::vector<OrbitLet>& list, NameKind kind) {
             for (const OrbitLet& let : list) {
                 expression(into, let.value);
-                define(into, kind, let.name, join(let.name.span, let.value.span));
+                names_.define(into, kind, let.name, join(let.name.span, let.value.span));
             }
         };
         lets(scope, orbit.lets, NameKind::let);
         for (const OrbitFunction& function : orbit.functions) {
-            Scope inside{&scope, join(function.name.span, function.body.span)};
+            NameScope inside{&scope, join(function.name.span, function.body.span)};
             for (const Name& parameter : function.parameters)
-                define(inside, NameKind::parameter, parameter);
+                names_.define(inside, NameKind::parameter, parameter);
             expression(inside, function.body);
-            define(scope, NameKind::function, function.name, inside.span);
+            names_.define(scope, NameKind::function, function.name, inside.span);
         }
         for (const OrbitMap& map : orbit.maps) {
-            Scope inside{&scope, map.span};
-            if (!map.name.text.empty()) define(scope, NameKind::map, map.name, map.span);
+            NameScope inside{&scope, map.span};
+            if (!map.name.text.empty()) names_.define(scope, NameKind::map, map.name, map.span);
             lets(inside, map.lets, NameKind::local);
             for (const std::optional<Expression>& coordinate : map.coordinates)
                 expression(inside, coordinate);
@@ -388,22 +326,22 @@ class Collector {
         for (const InstDefinition& definition : tree.definitions) {
             Span name = definition.span;
             name.end = name.begin + static_cast<std::uint32_t>(definition.name.size());
-            define(file_, NameKind::object, {document_.text(name), name}, definition.span);
+            names_.define(file_, NameKind::object, {document_.text(name), name}, definition.span);
         }
         statements(file_, tree.scene);
         for (std::size_t i = 0; i < tree.definitions.size(); ++i) {
             const InstDefinition& definition = tree.definitions[i];
             const std::uint32_t end =
                 i + 1 < tree.definitions.size() ? tree.definitions[i + 1].span.begin : tree.end.end;
-            Scope scope{&file_, {0, definition.span.begin, std::max(end, definition.span.end)}};
+            NameScope scope{&file_, {0, definition.span.begin, std::max(end, definition.span.end)}};
             object(scope, definition);
         }
     }
 
-    void object(Scope& scope, const InstDefinition& definition) {
+    void object(NameScope& scope, const InstDefinition& definition) {
         for (const InstParameter& parameter : definition.parameters)
             if (!parameter.is_number())
-                define(scope, NameKind::parameter, {document_.text(parameter.span), parameter.span});
+                names_.define(scope, NameKind::parameter, {document_.text(parameter.span), parameter.span});
         expression(scope, definition.weight);
         for (const auto& test : definition.tests)
             expression(scope, test->test);
@@ -411,14 +349,14 @@ class Collector {
             placed(scope, group);
     }
 
-    void placed(const Scope& scope, const InstGroup& group) {
+    void placed(const NameScope& scope, const InstGroup& group) {
         for (const InstReference& master : group.masters) {
             use_object(scope, master.name, master.span);
             expressions(scope, master.arguments);
         }
         transforms(scope, group.transforms);
         colours(scope, group.tints, group.ink);
-        if (group.material) use(scope, Space::material, *group.material, group.material_span);
+        if (group.material) names_.use(scope, NameSpace::material, *group.material, group.material_span);
         expression(scope, group.below);
         expression(scope, group.chance);
         if (group.hue) expression(scope, *group.hue);
@@ -431,7 +369,7 @@ class Collector {
         }
     }
 
-    void colours(const Scope& scope, const std::vector<InstTint>& tints,
+    void colours(const NameScope& scope, const std::vector<InstTint>& tints,
                  const std::vector<InstInkStep>& ink) {
         for (const InstTint& tint : tints) {
             expressions(scope, tint.values);
@@ -441,7 +379,7 @@ class Collector {
             expressions(scope, step.values);
     }
 
-    void scattered(const Scope& scope, const InstScatter& scatter) {
+    void scattered(const NameScope& scope, const InstScatter& scatter) {
         for (const auto* value : {&scatter.count, &scatter.apart, &scatter.seed})
             expression(scope, *value);
         if (scatter.over) expressions(scope, scatter.over->numbers);
@@ -455,48 +393,9 @@ class Collector {
         expressions(scope, scatter.weights);
     }
 
-    /// Places each once and in order: groups share repeats, and values of `with` are written out.
-    std::vector<NamedThing> settled() {
-        const auto tidy = [](std::vector<Span>& spans) {
-            std::ranges::sort(spans, {}, &Span::begin);
-            spans.erase(std::unique(spans.begin(), spans.end()), spans.end());
-        };
-        const auto first_place = [](const NamedThing& thing) {
-            const std::uint32_t used = thing.uses.empty() ? UINT32_MAX : thing.uses.front().begin;
-            return std::min(used,
-                            thing.definitions.empty() ? thing.whole.begin : thing.definitions.front().begin);
-        };
-        for (NamedThing& thing : things_) {
-            std::vector<Span>& places = thing.definitions;
-            const Span first = places.empty() ? Span() : places.front();
-            tidy(places);
-            std::erase_if(thing.uses, [&](Span use) {
-                return std::ranges::binary_search(places, use.begin, {}, &Span::begin);
-            });
-            // The first production stays in front of the list of modules.
-            if (const auto at = std::ranges::find(places, first); at != places.end())
-                std::rotate(places.begin(), at, at + 1);
-            tidy(thing.uses);
-        }
-        std::ranges::stable_sort(things_, {}, first_place);
-        for (auto& [key, uses] : free_) {
-            tidy(uses);
-            things_.push_back({kind_in(key.first), key.second, {}, {}, std::move(uses), {}});
-        }
-        return std::move(things_);
-    }
-
-    static NameKind kind_in(Space space) {
-        constexpr NameKind kinds[] = {NameKind::let,   NameKind::function, NameKind::module,
-                                      NameKind::label, NameKind::material, NameKind::map,
-                                      NameKind::object};
-        return kinds[static_cast<std::size_t>(space)];
-    }
-
     const Document& document_;
-    Scope file_;
-    std::vector<NamedThing> things_;
-    std::map<std::pair<Space, std::string>, std::vector<Span>> free_;
+    NameScope file_;
+    NameTable names_;
 };
 
 } // namespace

@@ -155,7 +155,7 @@ vec3 point_above(uint part, vec3 point) {
 /// The limit's normal where the proxy of a node is met (limit_normal() of runtime/trace).
 vec3 limit_normal(Meeting meeting) {
     const int most_levels = LIMIT_LEVELS;
-    vec3 sum = meeting.normal, point = meeting.site.point;
+    vec3 sum = normalize(meeting.normal), point = meeting.site.point;
     int level = 0;
     float weight = 1.0f;
     for (int i = meeting.last; i > 0; --i) {

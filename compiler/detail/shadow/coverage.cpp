@@ -148,10 +148,8 @@ class Fitter {
     void fit_single(NodeId root) {
         if (cut_.nodes[root].unending && !reaches_area(root)) {
             shadowless_[root] = true;
-            const std::vector<DetailEdge>& edges = cut_.nodes[root].edges;
-            const bool is_wrapper = edges.size() == 1 && cut_.nodes[root].stop_edges.empty();
             ends_full_[root] =
-                (is_wrapper || ends_full(root)) && std::ranges::all_of(edges, [&](const DetailEdge& edge) {
+                ends_full(root) && std::ranges::all_of(cut_.nodes[root].edges, [&](const DetailEdge& edge) {
                     return ends_full_[congruence_.root[edge.child]];
                 });
             return;

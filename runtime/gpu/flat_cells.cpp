@@ -82,6 +82,7 @@ class Covers {
             split(largest, pieces);
         }
         std::vector<Box> boxes;
+        boxes.reserve(pieces.size());
         for (const Piece& piece : pieces)
             boxes.push_back(piece.box);
         return boxes;

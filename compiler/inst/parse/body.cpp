@@ -228,7 +228,7 @@ class BodyParser {
             return false;
         }
         const auto shared =
-            std::make_shared<const InstTest>(std::move(*test), stream_.span_from(keyword.span));
+            std::make_shared<const InstTest>(InstTest{std::move(*test), stream_.span_from(keyword.span)});
         definition_.tests.push_back(shared);
         if (!parse_conditional({shared, true})) return false;
         if (!stream_.accept("else")) return true;

@@ -20,6 +20,7 @@ constexpr std::size_t most_followed_angles = 100;
 /// Directions, to a twentieth of a degree.
 std::vector<double> distinct_degrees(const std::vector<double>& directions) {
     std::vector<double> distinct;
+    distinct.reserve(directions.size());
     for (const double degrees : directions)
         distinct.push_back(std::round(degrees * 20) / 20);
     std::ranges::sort(distinct);

@@ -36,8 +36,8 @@ FORMULA real haze_column(real s) {
 /// A ray's way through haze.
 struct HazeWay {
     real begin;    // its height above the base, in heights of the haze; 0 where that is even
-    real rise;     // of a length, likewise 0
-    real height;   // Haze's, and the next
+    real rise;     // of a length
+    real height;   // Haze's, as the distance
     real distance;
 };
 

@@ -10,7 +10,7 @@ namespace graftal {
 
 namespace {
 
-/// Both of its heights are 0 where the haze is even.
+/// An even haze has an infinite height: a way in it begins at 0 and does not rise.
 formulas::HazeWay way_in(const Haze& haze, Vec3 from, Vec3 direction) {
     return {(from.y - haze.base) / haze.height, direction.y, haze.height, haze.distance};
 }

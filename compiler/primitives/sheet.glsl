@@ -14,6 +14,7 @@ FORMULA real sheet_thickness(vec3 x, vec3 y, vec3 z, vec3 extents, bool wide, OU
     // Cofactors of a flat map are the product of its two larger stretches, along the third's direction. They are
     // normal to two columns: the third alone leads from face to face.
     vec3 across = cross(a, b);
+    const real volume = abs(dot(across, c));
     real extent = extents.z;
     const vec3 across_x = cross(b, c), across_y = cross(c, a);
     if (length(across_x) > length(across)) {
@@ -24,7 +25,7 @@ FORMULA real sheet_thickness(vec3 x, vec3 y, vec3 z, vec3 extents, bool wide, OU
         across = across_y;
         extent = extents.y;
     }
-    const real area = length(across), volume = abs(dot(cross(a, b), c));
+    const real area = length(across);
     if (!(area > REAL(0))) return REAL(-1);
     const real shorter = area / max(length(a), max(length(b), length(c)));
     const real thickness = extent * volume / area;

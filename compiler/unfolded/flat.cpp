@@ -21,18 +21,6 @@ std::array<float, 12> floats_of(const Affine& map) {
     return floats;
 }
 
-/// Rounded outwards.
-std::array<float, 6> floats_of(const Box& box) {
-    std::array<float, 6> floats;
-    for (int axis = 0; axis < 3; ++axis) {
-        constexpr float infinity = std::numeric_limits<float>::infinity();
-        const auto k = static_cast<std::size_t>(axis);
-        floats[k] = std::nextafter(static_cast<float>(box.min[axis]), -infinity);
-        floats[k + 3] = std::nextafter(static_cast<float>(box.max[axis]), infinity);
-    }
-    return floats;
-}
-
 class Flattening {
   public:
     Flattening(const DetailGraph& cut, const DrawnBounds& bounds, std::size_t most_edges)
@@ -137,6 +125,29 @@ Mat3 child_from_parent(const FlatEdge& edge) {
     for (std::size_t i = 0; i < 9; ++i)
         linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)] = edge.child_from_parent[i].value();
     return linear;
+}
+
+std::array<float, 6> floats_of(const Box& box) {
+    std::array<float, 6> floats;
+    for (int axis = 0; axis < 3; ++axis) {
+        constexpr float infinity = std::numeric_limits<float>::infinity();
+        const auto k = static_cast<std::size_t>(axis);
+        floats[k] = std::nextafter(static_cast<float>(box.min[axis]), -infinity);
+        floats[k + 3] = std::nextafter(static_cast<float>(box.max[axis]), infinity);
+    }
+    return floats;
+}
+
+Box box_of(const FlatEdge& edge) {
+    return {{edge.box[0], edge.box[1], edge.box[2]}, {edge.box[3], edge.box[4], edge.box[5]}};
+}
+
+Affine frame_from_proxy(const FlatNode& node) {
+    Affine map;
+    for (std::size_t i = 0; i < 12; ++i)
+        (i < 9 ? map.linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]
+               : map.translation[static_cast<int>(i - 9)]) = node.frame_from_proxy[i];
+    return map;
 }
 
 Affine parent_from_child(const FlatEdge& edge) {

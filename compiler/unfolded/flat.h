@@ -46,6 +46,9 @@ struct FlatEdge {
 Mat3 child_from_parent(const FlatEdge& edge);
 /// Requires an edge of a FlatGraph, whose maps can be inverted.
 Affine parent_from_child(const FlatEdge& edge);
+/// A box as edges have it, rounded outwards; and that of an edge.
+std::array<float, 6> floats_of(const Box& box);
+Box box_of(const FlatEdge& edge);
 
 struct FlatNode {
     std::uint32_t first_edge = 0;
@@ -63,6 +66,9 @@ struct FlatNode {
     Paint mean, proxy;                        ///< colours from afar
     std::uint32_t finish = flat_none;         ///< material of the proxy; none: that it inherits
 };
+
+/// The map that places a proxy.
+Affine frame_from_proxy(const FlatNode& node);
 
 struct FlatGraph {
     std::vector<FlatNode> nodes; ///< by number of the layers

@@ -63,11 +63,7 @@ class Covers {
             add(box_of(edge), whole.place * parent_from_child(edge), splits ? edge.child : flat_none);
         }
         if (node.stop_edge_count > 0 || !(node.unending || node.cut_detail > 0)) return;
-        Affine proxy;
-        for (std::size_t i = 0; i < 12; ++i)
-            (i < 9 ? proxy.linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]
-                   : proxy.translation[static_cast<int>(i - 9)]) = node.frame_from_proxy[i];
-        add(transformed(proxy, {Vec3(-1), Vec3(1)}), {}, flat_none);
+        add(transformed(frame_from_proxy(node), {Vec3(-1), Vec3(1)}), {}, flat_none);
     }
 
     std::vector<Box> cover(std::uint32_t id) const {
@@ -100,7 +96,7 @@ class Cells {
         for (const FlatEdge& edge : graph_.edges) {
             cells_.edges.push_back({edge});
             if (!is_endless(edge))
-                cells_.edges.back().edge.box = rounded(held(edge, parent_from_child(edge), box_of(edge)));
+                cells_.edges.back().edge.box = floats_of(held(edge, parent_from_child(edge), box_of(edge)));
         }
         cells_.deep.resize(graph_.nodes.size());
         for (const FlatNode& node : graph_.nodes) {
@@ -227,7 +223,7 @@ class Cells {
         for (std::size_t i = 0; i < 3; ++i)
             edge.origin[i] = FloatPair(whole.translation[static_cast<int>(i)]);
         if (!is_endless(second))
-            edge.box = rounded(
+            edge.box = floats_of(
                 held(second, whole, common(box_of(first), transformed(parent_from_middle, box_of(second)))));
         cells_.edges.push_back({edge, before, last});
         return static_cast<std::uint32_t>(cells_.edges.size() - 1);
@@ -242,17 +238,6 @@ class Cells {
         return within.empty() ? box : common(box, within);
     }
 
-    static std::array<float, 6> rounded(const Box& box) {
-        std::array<float, 6> result{};
-        for (int axis = 0; axis < 3; ++axis) {
-            constexpr float infinity = std::numeric_limits<float>::infinity();
-            const auto k = static_cast<std::size_t>(axis);
-            result[k] = std::nextafter(static_cast<float>(box.min[axis]), -infinity);
-            result[k + 3] = std::nextafter(static_cast<float>(box.max[axis]), infinity);
-        }
-        return result;
-    }
-
     const FlatGraph& graph_;
     Covers covers_{graph_};
     FlatCells cells_;
@@ -261,10 +246,6 @@ class Cells {
 };
 
 } // namespace
-
-Box box_of(const FlatEdge& edge) {
-    return {{edge.box[0], edge.box[1], edge.box[2]}, {edge.box[3], edge.box[4], edge.box[5]}};
-}
 
 bool is_similarity(const FlatEdge& edge) {
     const Mat3 linear = double(edge.stretch) * child_from_parent(edge),

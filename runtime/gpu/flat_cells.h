@@ -3,12 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "compiler/support/bounds.h"
 #include "compiler/unfolded/flat.h"
 
 namespace graftal {
 
-Box box_of(const FlatEdge& edge);
 /// Whether the map of an edge scales evenly, as single precision sees it.
 bool is_similarity(const FlatEdge& edge);
 

@@ -143,11 +143,8 @@ class Flattener {
         }
         flat_.nodes.emplace_back(node.centre[0], node.centre[1], node.centre[2], 0.5f * node.diameter);
         flat_.nodes.emplace_back(node.cut_detail, flat_bits(flags), flat_bits(tree), flat_bits(stop_tree));
-        Affine frame_from_proxy;
-        for (std::size_t i = 0; i < 12; ++i)
-            (i < 9 ? frame_from_proxy.linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]
-                   : frame_from_proxy.translation[static_cast<int>(i - 9)]) = node.frame_from_proxy[i];
-        const Affine proxy_from_frame = is_singular(frame_from_proxy) ? Affine() : inverse(frame_from_proxy);
+        const Affine proxy = frame_from_proxy(node);
+        const Affine proxy_from_frame = is_singular(proxy) ? Affine() : inverse(proxy);
         for (int row = 0; row < 3; ++row)
             flat_.nodes.push_back(flat_four({proxy_from_frame.linear[0][row], proxy_from_frame.linear[1][row],
                                              proxy_from_frame.linear[2][row]},

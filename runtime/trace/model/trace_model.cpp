@@ -329,21 +329,6 @@ double least_detail(const TraceModel& model) {
     return model.projection.detail_per_unit(far) / Projection::coarser_out_of_sight;
 }
 
-/// Farthest reach of terminals from the middle of the part that they stand for, where it is just cut, in
-/// lengths of the error.
-double farthest_terminal(const TraceModel& model) {
-    double farthest = 0;
-    for (const TraceNode& node : model.nodes)
-        for (std::uint32_t i = 0; i < node.stop_edge_count; ++i) {
-            const Box& box = model.edges[node.first_edge + node.edge_count + i].box;
-            if (!(node.ball_radius > 0) || box.empty()) continue;
-            const Vec3 centre = vec3_of(node.ball_centre);
-            const Vec3 corner = glm::max(glm::abs(box.min - centre), glm::abs(box.max - centre));
-            farthest = std::max(farthest, 0.5 * node.cut_detail * glm::length(corner) / node.ball_radius);
-        }
-    return farthest;
-}
-
 /// TraceModel::even.
 bool is_even(const TraceModel& model) {
     // Where nothing is culled, only what is flat is drawn wider than it is.
@@ -459,7 +444,7 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedGraph> ready, const View& s
         clear_texels = clear_texels || (texture && texture->coverage < 1);
     const Control control{cancel, {}};
     ModelBuilder(*this, control).build();
-    terminal_reach = farthest_terminal(*this);
+    near_enough = NearEnough(*this);
     find_shells(*this, control);
     add_specks(*this);
     add_unrollings(*this, cancel);
@@ -476,24 +461,6 @@ const SelfShadows& TraceModel::self_shadows(const CancelFlag& cancel) const {
                                     options.limit_normals, options.light_steps,
                                     self_shadow_work(options.work_seconds), cancel);
     });
-}
-
-double TraceModel::near_enough(const Ray& ray, double share) const {
-    constexpr double before_all = -std::numeric_limits<double>::infinity();
-    const Box& box = prepared.bounds;
-    if (!(most_half_width > 0) || prepared.root_steps != unlimited_steps || box.empty()) return before_all;
-    const Vec3 size = box.size();
-    const double most_thickness = 0.1 * most_half_width;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (size[axis] > most_thickness || ray.direction[axis] == 0) continue;
-        const double slope = std::abs(ray.direction[axis]);
-        const double middle = (box.centre()[axis] - ray.origin[axis]) / ray.direction[axis];
-        const Ball here{ray(middle), 2 * most_half_width};
-        const double half_width = std::min(most_half_width, projection.most_half_width(here));
-        const double height = std::max(half_width, terminal_reach / projection.detail_per_unit(here));
-        return middle - height / slope + share * half_width / glm::length(ray.direction);
-    }
-    return before_all;
 }
 
 } // namespace graftal

@@ -24,16 +24,10 @@
 #include "runtime/trace/model/lanes.h"
 #include "runtime/trace/model/leaf_group.h"
 #include "runtime/trace/model/mesh_store.h"
+#include "runtime/trace/model/near_enough.h"
 #include "runtime/trace/model/specks.h"
 
 namespace graftal {
-
-/// Parts of a set without thickness after which a ray's best hit is near enough. No hit may be nearer by
-/// more than this share of the half width of the parts: thousands may lie in each other.
-inline constexpr std::uint64_t most_patience = 256;
-inline constexpr double near_enough_share = 0.25;
-/// A hit so near is near enough at once: flat tops of parts in one plane are all as near.
-inline constexpr double plenty_share = 1e-4;
 
 inline constexpr std::uint32_t no_edge = UINT32_MAX;
 /// Marks an edge of a path that starts at a cut node.
@@ -193,8 +187,8 @@ struct TraceModel {
     Projection projection;
     double least_detail_per_unit = 0; ///< of Projection, anywhere on the model
     double most_half_width = 0;       ///< likewise, where something is drawn wider than it is
-    double terminal_reach = 0;        ///< of terminals from the middle of what they stand for, in errors
     double widest = 1;                ///< of all primitives: widened_reach()
+    NearEnough near_enough;           ///< hits on a set in a plane
 
     std::vector<TraceNode> nodes; ///< by number of layers.cut.nodes
     std::vector<TraceEdge> edges; ///< the first leads to the root, from world space
@@ -226,10 +220,6 @@ struct TraceModel {
     std::vector<EvenPart> even_parts; ///< by edge, if it is
     std::vector<EvenOffset> even_offsets;
     std::vector<EvenTriangles> even_triangles; ///< of groups
-
-    /// Distance up to which a hit is near enough, if none can be nearer by more than this share of the half
-    /// width: for a model in a plane that is drawn in specks. Else before all.
-    double near_enough(const Ray& ray, double share) const;
 
     /// Shadows of the view's lights; measured when they are first asked for: the flag ends that
     /// by Cancelled.

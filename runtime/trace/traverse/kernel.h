@@ -28,8 +28,8 @@ template<Instructions instructions, bool any> struct Traversal::Kernel : Places 
         constexpr double before_all = -std::numeric_limits<double>::infinity();
         double enough = before_all, plenty = before_all;
         if (model.most_half_width > 0) {
-            enough = model.near_enough(ray, near_enough_share);
-            plenty = model.near_enough(ray, plenty_share);
+            enough = model.near_enough.distance(model, ray, near_enough_share);
+            plenty = model.near_enough.distance(model, ray, plenty_share);
         }
         self.best_.t = range.most;
         self.visit_limit_ = self.visits_ + self.visits_allowed();

@@ -169,5 +169,37 @@ TEST(LeastWidth, WhatIsCrushedOntoALineIsAPixelThick) {
     }
 }
 
+// Rays took the flank of a widened cylinder for near enough, whose top is twice as far from the plane.
+TEST(LeastWidth, HitsOnSetsInAPlaneAreTheNearestOrNearlySo) {
+    const Affine upright = Affine::rotate({1, 0, 0}, 90), lying = Affine::rotate({1, 1, 0}, 40);
+    for (const PrimitiveKind kind :
+         {PrimitiveKind::cylinder, PrimitiveKind::cone, PrimitiveKind::cube, PrimitiveKind::sphere})
+        for (const Affine& turned : {Affine(), upright, lying}) {
+            // They nearly fill a square.
+            std::vector<Affine> maps;
+            for (const Vec3 at : {Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0, 0.5, 0), Vec3(0.5, 0.5, 0)})
+                maps.push_back(Affine::translate(at) * Affine::scale(Vec3(0.497)));
+            Graph graph = limit_of(maps);
+            graph.objects[graph.objects[graph.root].instances[0].master].terminal =
+                Instance{graph.primitive(kind), turned * Affine::scale(Vec3(0.6)), {}, {}, {}};
+            const auto model = traced(graph, culled_at_half_a_pixel());
+            TraceModel patient(model->shared, model->view, model->options);
+            patient.near_enough = {};
+            Traversal hasty(*model), exact(patient);
+            const double half_width = model->most_half_width;
+            std::uint64_t hits = 0;
+            for (int i = 0; i < 20; ++i) {
+                const Ray ray{{0.05 + 0.045 * i, 0.93 - 0.04 * i, 5}, {0.003, 0.002, -1}};
+                SurfaceHit hit, nearest;
+                if (!exact.closest(ray, {}, nearest)) continue;
+                ASSERT_TRUE(hasty.closest(ray, {}, hit));
+                EXPECT_LE(hit.t, nearest.t + near_enough_share * half_width) << static_cast<int>(kind);
+                ++hits;
+            }
+            EXPECT_EQ(hits, 20u);
+            EXPECT_EQ(exact.given_up(), 0u);
+        }
+}
+
 } // namespace
 } // namespace graftal

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <span>
+#include <thread>
 #include <vector>
 
 #include <glm/vec4.hpp>
@@ -18,7 +20,7 @@ namespace {
 
 /// The Job of picture.comp.
 struct Job {
-    std::array<std::uint32_t, 4> window, picture, sequence;
+    std::array<std::uint32_t, 4> window, picture, sequence, share;
 };
 
 constexpr std::size_t scene_binding = 7, film_binding = 9;
@@ -37,68 +39,126 @@ template<typename Value> std::span<const std::byte> bytes_of(const std::vector<V
 
 } // namespace
 
-GpuPicture::GpuPicture(Gpu& gpu, ImageSize size, const Tile& window, const Samples& samples)
-    : gpu_(gpu), size_(size), window_(window), samples_(samples) {}
+GpuPicture::GpuPicture(const std::vector<Gpu*>& gpus, ImageSize size, const Tile& window,
+                       const Samples& samples)
+    : size_(size), window_(window), samples_(samples) {
+    for (Gpu* const gpu : gpus)
+        shares_.push_back({gpu, static_cast<int>(shares_.size())});
+}
+
+Status GpuPicture::for_each_share(const std::function<Status(Share&)>& act) {
+    std::vector<Status> statuses(shares_.size());
+    std::vector<std::thread> others;
+    for (std::size_t i = 1; i < shares_.size(); ++i)
+        others.emplace_back([&, i] { statuses[i] = act(shares_[i]); });
+    statuses[0] = act(shares_[0]);
+    for (std::thread& other : others)
+        other.join();
+    for (const Status& status : statuses)
+        if (!status.ok()) return status;
+    return {};
+}
 
 Status GpuPicture::prepare(const FlatModel& model, std::uint32_t frames) {
     const FlatModel::Features& has = model.features;
     const std::array<std::uint32_t, 11> constants = {
         frames,       samples_.aovs, has.stretched, has.even,   model.scene.widths.z > 0, has.patterned,
         has.pictured, has.glassy,    has.kinds,     has.paired, has.translucent};
-    Status status = gpu_.load(picture_spirv, film_binding + 1, sizeof(Job), constants, scene_binding);
     const std::span<const std::byte> scene = std::as_bytes(std::span(&model.scene, 1));
-    for (const std::span<const std::byte> bytes :
-         {bytes_of(model.boxes), bytes_of(model.parts), bytes_of(model.nodes), bytes_of(model.looks),
-          bytes_of(model.materials), bytes_of(model.triangles), bytes_of(model.texels), scene,
-          bytes_of(model.lows)})
-        if (status.ok()) status = gpu_.add_buffer(bytes);
-    if (status.ok()) status = gpu_.add_buffer({}, window_.pixels() * sums_a_pixel() * sizeof(glm::vec4));
-    return status;
+    return for_each_share([&](const Share& share) {
+        Status status =
+            share.gpu->load(picture_spirv, film_binding + 1, sizeof(Job), constants, scene_binding);
+        for (const std::span<const std::byte> bytes :
+             {bytes_of(model.boxes), bytes_of(model.parts), bytes_of(model.nodes), bytes_of(model.looks),
+              bytes_of(model.materials), bytes_of(model.triangles), bytes_of(model.texels), scene,
+              bytes_of(model.lows)})
+            if (status.ok()) status = share.gpu->add_buffer(bytes);
+        if (status.ok())
+            status = share.gpu->add_buffer({}, window_.pixels() * sums_a_pixel() * sizeof(glm::vec4));
+        return status;
+    });
 }
 
 Status GpuPicture::sample(std::uint32_t count, const std::function<bool(double)>& goes_on) {
-    const std::uint32_t most = gpu_.info().is_processor ? most_samples_by_software : count;
-    const double all = static_cast<double>(count - done_) * window_.height;
-    double finished = 0;
-    while (done_ < count) {
-        // A piece is several samples of the whole window; else one sample, of as many whole rows of groups. A
-        // device is full only with many pixels.
-        const double affordable = seconds_a_piece * pixels_a_second_ / static_cast<double>(window_.pixels());
-        const std::uint32_t samples =
-            std::min({count - done_, most, static_cast<std::uint32_t>(std::clamp(affordable, 1.0, 1e6))});
-        for (int row = 0; row < window_.height;) {
-            if (!goes_on(finished / all)) return Status::failure("interrupted");
-            const double affordable_rows = seconds_a_piece * pixels_a_second_ / samples / window_.width;
-            const int rows =
-                samples > 1
-                    ? window_.height
-                    : std::min(window_.height - row,
-                               group_side * std::max(1, static_cast<int>(std::min(affordable_rows, 1e6)) /
-                                                            group_side));
+    const double all = static_cast<double>(count - done_) * static_cast<double>(window_.pixels());
+    std::mutex mutex;
+    double drawn = 0;
+    bool failed = false, interrupted = false;
+    const Asks asks = [&](double pixels) {
+        const std::lock_guard lock(mutex);
+        drawn += pixels;
+        interrupted = interrupted || !goes_on(std::min(drawn / all, 1.0));
+        return !failed && !interrupted;
+    };
+    Status status = for_each_share([&](Share& share) {
+        Status of_share = sample(share, count, asks);
+        const std::lock_guard lock(mutex);
+        failed = failed || !of_share.ok();
+        return of_share;
+    });
+    if (status.ok() && interrupted) status = Status::failure("interrupted");
+    if (status.ok()) done_ = count;
+    return status;
+}
+
+Status GpuPicture::sample(Share& share, std::uint32_t count, const Asks& goes_on) const {
+    const std::uint32_t most = share.gpu->info().is_processor ? most_samples_by_software : count;
+    const int in_turn = static_cast<int>(shares_.size());
+    const int all_rows = (window_.height + group_side - 1) / group_side; // of tiles, as all rows here
+    const int own_rows = (all_rows - share.first + in_turn - 1) / in_turn;
+    const double row_pixels = static_cast<double>(group_side) * window_.width;
+    double pixels = 0;
+    for (std::uint32_t done = done_; done < count && own_rows > 0;) {
+        // A piece is several samples of all rows; else one sample, of as many rows as it can be. A device is full
+        // only with many pixels.
+        const double affordable = seconds_a_piece * share.pixels_a_second / row_pixels;
+        const std::uint32_t samples = std::min(
+            {count - done, most, static_cast<std::uint32_t>(std::clamp(affordable / own_rows, 1.0, 1e6))});
+        for (int row = 0; row < own_rows;) {
+            if (!goes_on(pixels)) return {};
+            const int rows = samples > 1
+                                 ? own_rows
+                                 : std::min(own_rows - row, static_cast<int>(std::clamp(affordable, 1.0, 1e6)));
+            const int top = group_side * (share.first + row * in_turn);
             const auto u = [](auto number) { return static_cast<std::uint32_t>(number); };
-            const Job job{{u(window_.x), u(window_.y + row), u(window_.width), u(rows)},
-                          {u(size_.width), u(size_.height), done_, samples},
-                          {u(samples_.sequence), u(samples_.sequence >> 32), u(row) * u(window_.width),
-                           samples_.lattice}};
-            const auto groups = [](int pixels) { return (pixels + group_side - 1) / group_side; };
+            const Job job{{u(window_.x), u(window_.y + top), u(window_.width), u(window_.height - top)},
+                          {u(size_.width), u(size_.height), done, samples},
+                          {u(samples_.sequence), u(samples_.sequence >> 32), u(top) * u(window_.width),
+                           samples_.lattice},
+                          {u(in_turn)}};
             double seconds = 0;
-            if (Status status = gpu_.run(std::as_bytes(std::span(&job, 1)),
-                                         u(groups(window_.width)) * u(groups(rows)), seconds);
+            if (Status status =
+                    share.gpu->run(std::as_bytes(std::span(&job, 1)),
+                                   u((window_.width + group_side - 1) / group_side) * u(rows), seconds);
                 !status.ok())
                 return status;
-            seconds_ += seconds;
-            pixels_a_second_ = static_cast<double>(rows) * window_.width * samples / std::max(seconds, 1e-6);
-            finished += static_cast<double>(rows) * samples;
+            pixels = row_pixels * rows * samples;
+            share.seconds += seconds;
+            share.pixels_a_second = pixels / std::max(seconds, 1e-6);
             row += rows;
         }
-        done_ += samples;
+        done += samples;
     }
     return {};
 }
 
+double GpuPicture::seconds() const {
+    return std::ranges::max(shares_, {}, &Share::seconds).seconds;
+}
+
 Status GpuPicture::read_sums(std::vector<glm::vec4>& sums) {
     sums.resize(window_.pixels() * sums_a_pixel());
-    return gpu_.read(film_binding, std::as_writable_bytes(std::span(sums)));
+    const std::size_t a_row = sums_a_pixel() * static_cast<std::size_t>(group_side * window_.width);
+    const std::size_t a_piece = shares_.size() == 1 ? sums.size() : a_row;
+    return for_each_share([&](const Share& share) {
+        Status status;
+        for (std::size_t at = static_cast<std::size_t>(share.first) * a_piece; at < sums.size() && status.ok();
+             at += shares_.size() * a_piece) {
+            const auto own = std::span(sums).subspan(at, std::min(a_piece, sums.size() - at));
+            status = share.gpu->read(film_binding, std::as_writable_bytes(own), at * sizeof(glm::vec4));
+        }
+        return status;
+    });
 }
 
 Status GpuPicture::read_aovs(const FlatModel& model, AovPicture& aovs, bool& lost) {

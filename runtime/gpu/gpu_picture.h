@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "runtime/gpu/device.h"
 #include "runtime/gpu/flat_model.h"
@@ -11,8 +12,9 @@
 
 namespace graftal {
 
-/// A picture of one flat model on one device, which grows by samples. The sums are the same, to the last bit,
-/// however the work is cut into pieces; other devices may round otherwise.
+/// A picture of one flat model, which grows by samples. Several devices take rows of tiles in turn, each on a
+/// thread of its own. The sums are the same, to the last bit, however the work is cut into pieces; devices of
+/// another kind may round otherwise.
 class GpuPicture {
   public:
     /// Samples of a pixel: of light that is estimated, or of a lattice.
@@ -22,16 +24,17 @@ class GpuPicture {
         bool aovs = false; ///< read_aovs() is wanted, in place of light
     };
 
-    /// `window`: the part of a picture of this size that is drawn. The device outlives it.
-    GpuPicture(Gpu& gpu, ImageSize size, const Tile& window, const Samples& samples);
+    /// `window`: the part of a picture of this size that is drawn. The devices, one or more, outlive it.
+    GpuPicture(const std::vector<Gpu*>& gpus, ImageSize size, const Tile& window, const Samples& samples);
 
-    /// Makes the kernel, and brings the model to the device. `frames`: objects in each other that rays have
+    /// Makes the kernel, and brings the model to the devices. `frames`: objects in each other that rays have
     /// room for. More of them take more of the device's memory, and so its time.
     Status prepare(const FlatModel& model, std::uint32_t frames = rooms.front());
     static constexpr std::array<std::uint32_t, 3> rooms = {64, 256, 2048}; ///< of frames, to be tried in turn
 
     /// Adds samples until each pixel has `count`, or is calm. `goes_on` is asked between pieces, which take
-    /// about 30 ms, with the share that is done; after it says false the status is a failure: "interrupted".
+    /// about 30 ms, with the share that is done, by one thread at a time; after it says false the status is a
+    /// failure: "interrupted".
     Status sample(std::uint32_t count, const std::function<bool(double share)>& goes_on);
 
     /// Samples a lattice takes.
@@ -56,19 +59,30 @@ class GpuPicture {
     /// one prepared.
     Status read_aovs(const FlatModel& model, AovPicture& aovs, bool& lost);
 
-    double seconds() const { return seconds_; } ///< that the device has worked
+    double seconds() const; ///< that the devices have worked, side by side
 
   private:
+    /// What one of the devices draws: of the rows of tiles each one whose number leaves `first`, by division.
+    struct Share {
+        Gpu* gpu;
+        int first;
+        double seconds = 0;         ///< that it has worked
+        double pixels_a_second = 0; ///< samples of pixels, by the last piece; 0: unknown
+    };
+    using Asks = std::function<bool(double pixels)>; ///< told of the samples of pixels that were drawn
+
     std::size_t sums_a_pixel() const { return samples_.aovs ? 4 : 2; }
+    /// Does it for each share, on threads of their own. The status is the first failure in the order of shares.
+    Status for_each_share(const std::function<Status(Share&)>& act);
+    /// Draws the samples up to `count`, as long as it `goes_on`.
+    Status sample(Share& share, std::uint32_t count, const Asks& goes_on) const;
     Status read_sums(std::vector<glm::vec4>& sums);
 
-    Gpu& gpu_;
     ImageSize size_;
     Tile window_;
     Samples samples_;
+    std::vector<Share> shares_;
     std::uint32_t done_ = 0;
-    double seconds_ = 0;
-    double pixels_a_second_ = 0; ///< samples of pixels, by the last piece; 0: unknown
 };
 
 } // namespace graftal

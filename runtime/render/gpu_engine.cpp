@@ -6,6 +6,7 @@
 #include <mutex>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -54,12 +55,12 @@ class GpuDrawing {
         return model;
     }
 
-    Status draw(const FlatModel& model, Gpu& gpu) {
+    Status draw(const FlatModel& model, const std::vector<Gpu*>& gpus) {
         film_.begin({window_, picture_.channels, view_, prepared_.prepared->cut});
         Status status;
         bool fits = false;
         for (const std::uint32_t frames : GpuPicture::rooms)
-            if (!fits) status = draw(model, gpu, frames, fits);
+            if (!fits) status = draw(model, gpus, frames, fits);
         return status;
     }
 
@@ -69,19 +70,19 @@ class GpuDrawing {
 
   private:
     /// `fits`: rays have room for what lies in each other, as far as is known.
-    Status draw(const FlatModel& model, Gpu& gpu, std::uint32_t frames, bool& fits) {
+    Status draw(const FlatModel& model, const std::vector<Gpu*>& gpus, std::uint32_t frames, bool& fits) {
         fits = true;
         const std::uint32_t lattice = lattice_of(plan_.wanted);
         const std::uint32_t most = lattice > 0 ? GpuPicture::lattice_points(lattice)
                                                : static_cast<std::uint32_t>(plan_.wanted.most_samples);
-        GpuPicture drawing(gpu, view_.size, window_, {lattice, options_.sequence});
+        GpuPicture drawing(gpus, view_.size, window_, {lattice, options_.sequence});
         const auto goes_on = [&](double share) {
             tell(share);
             return !cancel_.raised();
         };
         if (options_.needs_aovs()) {
             bool lost = false;
-            GpuPicture aovs(gpu, view_.size, window_, {lattice, options_.sequence, true});
+            GpuPicture aovs(gpus, view_.size, window_, {lattice, options_.sequence, true});
             Status status = aovs.prepare(model, frames);
             if (status.ok())
                 status = aovs.sample(lattice > 0 ? most : std::min(most, most_aov_samples), goes_on);
@@ -171,34 +172,78 @@ void note_native(const PreparedView& prepared, std::string_view why, Compilation
                                  fmt::format("the processors draw this picture, not the GPU: {}", why));
 }
 
-/// The device of the picture before, with its kernel: to open one takes longer than most frames of a film. It
-/// stays open to the end of the process, where drivers may be gone before it.
-class KeptGpu {
+/// Devices that draw a picture together.
+class GpuTeam {
   public:
-    std::unique_ptr<Gpu> take(std::size_t number, Status& status) {
+    /// Opens the devices of these numbers; of none, all cards of the first one's kind, which round alike.
+    Status open(const std::vector<std::size_t>& wanted) {
+        Status status;
+        for (const std::size_t number : wanted.empty() ? cards_alike() : wanted) {
+            std::unique_ptr<Gpu> gpu = Gpu::open(number, status);
+            if (!gpu) return status;
+            gpus_.push_back(std::move(gpu));
+        }
+        wanted_ = wanted;
+        return status;
+    }
+
+    bool is_of(const std::vector<std::size_t>& wanted) const { return !gpus_.empty() && wanted_ == wanted; }
+
+    std::vector<Gpu*> gpus() const {
+        std::vector<Gpu*> gpus;
+        gpus.reserve(gpus_.size());
+        for (const std::unique_ptr<Gpu>& gpu : gpus_)
+            gpus.push_back(gpu.get());
+        return gpus;
+    }
+
+    std::string name() const {
+        const std::string& first = gpus_.front()->info().name;
+        return gpus_.size() == 1 ? first : fmt::format("{} devices: {}", gpus_.size(), first);
+    }
+
+  private:
+    static std::vector<std::size_t> cards_alike() {
+        std::vector<std::size_t> alike = {0};
+        const std::vector<GpuInfo> devices = gpu_devices();
+        for (std::size_t i = 1; i < devices.size(); ++i)
+            if (devices[i].name == devices.front().name) alike.push_back(i);
+        return alike;
+    }
+
+    std::vector<std::size_t> wanted_;
+    std::vector<std::unique_ptr<Gpu>> gpus_;
+};
+
+/// The devices of the picture before, with their kernel: to open one takes longer than most frames of a film.
+/// They stay open to the end of the process, where drivers may be gone before them.
+class KeptGpus {
+  public:
+    Status take(const std::vector<std::size_t>& wanted, GpuTeam& team) {
         {
             const std::lock_guard lock(mutex_);
-            if (gpu_ && number_ == number) return std::move(gpu_);
+            if (team_.is_of(wanted)) {
+                std::swap(team, team_);
+                return {};
+            }
         }
-        return Gpu::open(number, status);
+        return team.open(wanted);
     }
 
-    /// Requires a device that works.
-    void keep(std::size_t number, std::unique_ptr<Gpu> gpu) {
+    /// Requires devices that work.
+    void keep(GpuTeam team) {
         const std::lock_guard lock(mutex_);
-        number_ = number;
-        std::swap(gpu_, gpu);
+        std::swap(team_, team);
     }
 
-    static KeptGpu& instance() {
-        static KeptGpu& kept = *new KeptGpu;
+    static KeptGpus& instance() {
+        static KeptGpus& kept = *new KeptGpus;
         return kept;
     }
 
   private:
     std::mutex mutex_;
-    std::unique_ptr<Gpu> gpu_;
-    std::size_t number_ = 0;
+    GpuTeam team_;
 };
 
 std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& options,
@@ -211,23 +256,22 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
     const CancelFlag cancel = session.control().cancel;
     GpuDrawing drawing(prepared, options, cancel);
     std::string why = options.aovs     ? "'--aovs' names what each sample meets"
-                      : options.device ? ""
-                                       : why_no_card();
+                      : options.devices.empty() ? why_no_card()
+                                                : "";
     std::optional<FlatModel> model;
     if (why.empty()) model = drawing.flat(why);
     if (model) {
-        Status status;
-        const std::size_t number = options.device.value_or(0);
-        std::unique_ptr<Gpu> gpu = KeptGpu::instance().take(number, status);
+        GpuTeam team;
+        Status status = KeptGpus::instance().take(options.devices, team);
         const double prepared_seconds = preparing.seconds();
-        if (gpu) status = drawing.draw(*model, *gpu);
+        if (status.ok()) status = drawing.draw(*model, team.gpus());
         if (status.ok() || cancel.raised()) {
             compilation.status = status;
             if (!drawing.has_begun()) return std::nullopt;
             compilation.times.push_back({"prepare", prepared_seconds});
             compilation.times.push_back({"trace", drawing.report().seconds});
-            const std::string name = gpu->info().name;
-            if (status.ok()) KeptGpu::instance().keep(number, std::move(gpu));
+            const std::string name = team.name();
+            if (status.ok()) KeptGpus::instance().keep(std::move(team));
             return report_of(drawing.report(), name);
         }
         why = status.message();

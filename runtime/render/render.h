@@ -44,7 +44,8 @@ struct RenderOptions : PictureWishes {
     std::optional<Tile> tile;
     std::optional<PictureFit> fit; ///< of the native engine: known already; requires `progressive` to be off
     int threads = 0;               ///< 0: as many as the engine likes
-    std::optional<std::size_t> device; ///< of the GPU engine: a number of gpu_devices(); null: the first card
+    /// Of the GPU engine: numbers of gpu_devices(); empty: all cards of the first one's kind.
+    std::vector<std::size_t> devices;
     bool aovs = false;                 ///< of an EXR: further channels (aov_channels.h)
     /// Whether the picture needs what its samples meet, and not only their light.
     bool needs_aovs() const { return aovs || compile.view.transparent; }

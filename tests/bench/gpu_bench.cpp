@@ -97,7 +97,7 @@ Status measure(Gpu& gpu, ImageSize size, const Job& job, nlohmann::json& row) {
     const Tile window{0, 0, size.width, size.height};
     double ms = 0;
     {
-        GpuPicture camera(gpu, size, window, {.aovs = true});
+        GpuPicture camera({&gpu}, size, window, {.aovs = true});
         Series series(camera, gpu.info().is_processor);
         Status status = camera.prepare(*flat);
         if (status.ok()) status = series.warm_up();
@@ -113,7 +113,7 @@ Status measure(Gpu& gpu, ImageSize size, const Job& job, nlohmann::json& row) {
         row["met"] = met / static_cast<double>(window.pixels());
         row["lost"] = lost;
     }
-    GpuPicture light(gpu, size, window, {});
+    GpuPicture light({&gpu}, size, window, {});
     Series series(light, gpu.info().is_processor);
     Status status = light.prepare(*flat);
     if (status.ok()) status = series.warm_up();

@@ -56,6 +56,16 @@ TEST_F(GpuFaults, AreNotesOnAPictureByTheProcessors) {
     }
 }
 
+TEST_F(GpuFaults, OfOneOfSeveralDevicesLeaveThePictureToTheProcessors) {
+    const RunResult drawn = draw("", "m.rifs --device 0,0");
+    EXPECT_THAT(drawn.err, HasSubstr("on 2 devices: llvmpipe"));
+    const RunResult lost = draw("vkQueueSubmit:28:-4", "m.rifs --device 0,0");
+    EXPECT_EQ(lost.status, 0) << lost.err;
+    EXPECT_THAT(lost.err, HasSubstr("not the GPU: GPU: running the kernel: the device was lost"));
+    EXPECT_EQ(picture("a.png").width, 16);
+    EXPECT_THAT(draw("", "m.rifs --device 0,7").err, HasSubstr("there is no device number 7"));
+}
+
 TEST_F(GpuFaults, ADriverOfTheProcessorsIsNoCardUnlessAskedFor) {
     const RunResult result =
         shell("timeout 100 \"$graftal\" render --engine gpu m.rifs --size 16x12 -o a.png");

@@ -72,7 +72,7 @@ Agreement compare(const std::string& name, Session& session, const StageOptions&
     bool lost = true;
     for (const std::uint32_t frames : GpuPicture::rooms) {
         if (!lost) break;
-        GpuPicture picture(*gpu, model.view.size, window, {.aovs = true});
+        GpuPicture picture({gpu.get()}, model.view.size, window, {.aovs = true});
         EXPECT_TRUE(picture.prepare(*flat, frames).ok());
         EXPECT_TRUE(picture.sample(1, [](double) { return true; }).ok());
         EXPECT_TRUE(picture.read_aovs(*flat, by_gpu, lost).ok());

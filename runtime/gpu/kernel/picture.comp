@@ -88,6 +88,7 @@ struct Job {
     uvec4 window; // x, y, width, height
     uvec4 picture; // width, height, first sample, samples
     uvec4 sequence; // low, high; the first pixel of the window in film[]; steps of a lattice
+    uvec4 share;    // tiles from a row to the next
 };
 layout(push_constant) uniform Push { Job job; };
 
@@ -108,7 +109,8 @@ void main() {
     const uint i = gl_GlobalInvocationID.x;
     // Tiles of 8x8 pixels keep the threads of a group together.
     const uint across = (job.window.z + 7u) / 8u, tile = i / 64u;
-    const uvec2 in_window = uvec2(8u * (tile % across) + i % 8u, 8u * (tile / across) + i / 8u % 8u);
+    const uvec2 in_window =
+        uvec2(8u * (tile % across) + i % 8u, 8u * (tile / across * job.share.x) + i / 8u % 8u);
     if (in_window.x >= job.window.z || in_window.y >= job.window.w) return;
     const uvec2 pixel = job.window.xy + in_window;
     const uint at = job.sequence.z + in_window.y * job.window.z + in_window.x;

@@ -65,7 +65,7 @@ Pictures draw(const Graph& graph, const Tile& window, std::uint32_t samples,
     Pictures pictures{blank(window), blank(window), {}};
     const std::unique_ptr<Gpu> gpu = first_device();
     if (!gpu || !flat) return pictures;
-    GpuPicture picture(*gpu, model.view.size, window, {});
+    GpuPicture picture({gpu.get()}, model.view.size, window, {});
     EXPECT_TRUE(picture.prepare(*flat, frames).ok());
     EXPECT_TRUE(picture.sample(samples, [](double) { return true; }).ok());
     EXPECT_TRUE(picture.read({}, 0, pictures.gpu, pictures.seen).ok());
@@ -96,6 +96,45 @@ TEST(Gpu, WindowsHaveThePixelsOfTheWhole) {
         for (int x = 0; x < 3 * window.width; ++x)
             ASSERT_EQ(part.gpu.pixels[static_cast<std::size_t>(3 * window.width * y + x)],
                       whole.gpu.pixels[static_cast<std::size_t>(3 * 40 * (y + window.y) + x + 3 * window.x)]);
+}
+
+TEST(Gpu, DevicesShareAPictureToTheLastBit) {
+    const auto plain = test::traced(test::tetrahedron(0.6), {});
+    const TraceModel model(plain->shared, lit_view(*plain), plain->options);
+    std::string why;
+    const auto flat = flat_model({model.prepared, model.view, model.options, model.textures, {}, {}}, why);
+    const std::unique_ptr<Gpu> first = first_device(), second = first_device(), third = first_device();
+    ASSERT_TRUE(flat && first && second && third) << why;
+    const Tile window{3, 2, 21, 27}; // four rows of tiles, the last of three pixels
+    std::vector<Image> pictures;
+    std::vector<AovPicture> aovs(2);
+    for (const auto& gpus : {std::vector{first.get()}, std::vector{first.get(), second.get(), third.get()}}) {
+        GpuPicture picture(gpus, model.view.size, window, {});
+        ASSERT_TRUE(picture.prepare(*flat).ok());
+        std::vector<double> shares;
+        for (const std::uint32_t count : {1, 3})
+            ASSERT_TRUE(picture
+                            .sample(count,
+                                    [&](double share) {
+                                        shares.push_back(share);
+                                        return true;
+                                    })
+                            .ok());
+        EXPECT_LE(*std::ranges::max_element(shares), 1);
+        GpuPicture::Seen seen;
+        ASSERT_TRUE(picture.read({}, 0, pictures.emplace_back(blank(window)), seen).ok());
+        EXPECT_EQ(seen.samples, 3 * 21 * 27);
+        GpuPicture facts(gpus, model.view.size, window, {.aovs = true});
+        bool lost = false;
+        ASSERT_TRUE(facts.prepare(*flat).ok());
+        ASSERT_TRUE(facts.sample(2, [](double) { return true; }).ok());
+        ASSERT_TRUE(facts.read_aovs(*flat, aovs[pictures.size() - 1], lost).ok());
+    }
+    EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
+    for (std::size_t i = 0; i < window.pixels(); ++i) {
+        ASSERT_EQ(aovs[0].pixels[i].depth, aovs[1].pixels[i].depth) << i;
+        ASSERT_THAT(aovs[0].pixels[i].normal, testing::ElementsAreArray(aovs[1].pixels[i].normal)) << i;
+    }
 }
 
 /// A chain of objects, each a step further than the one that holds it.
@@ -133,7 +172,7 @@ TEST(Gpu, CanBeInterrupted) {
         flat_model({plain->prepared, plain->view, plain->options, plain->textures, {}, {}}, why);
     const std::unique_ptr<Gpu> gpu = first_device();
     ASSERT_TRUE(gpu && flat);
-    GpuPicture picture(*gpu, {64, 48}, {0, 0, 64, 48}, {.lattice = 1});
+    GpuPicture picture({gpu.get()}, {64, 48}, {0, 0, 64, 48}, {.lattice = 1});
     ASSERT_TRUE(picture.prepare(*flat).ok());
     int asked = 0;
     const Status status = picture.sample(1, [&](double) { return ++asked < 2; });

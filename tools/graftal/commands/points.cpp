@@ -25,7 +25,7 @@ PointsOptions points_options(const Options& options) {
     points.card = options.points.card;
     points.threads = options.render.threads;
     points.gpu = options.engine->name == gpu_engine.name;
-    points.device = options.render.device;
+    if (!options.render.devices.empty()) points.device = options.render.devices.front();
     return points;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <sstream>
 #include <vector>
 
 #include "compiler/import/importers.h"
@@ -20,6 +21,25 @@
 namespace graftal {
 
 namespace {
+
+void add_devices(CLI::App& app, Options& options) {
+    const auto read = [](const std::string& text) -> std::optional<std::vector<std::size_t>> {
+        std::vector<std::size_t> numbers;
+        std::istringstream words(text + ',');
+        for (std::string word; std::getline(words, word, ',');) {
+            const std::optional<std::uint64_t> number = parse_whole(word, 0, UINT32_MAX);
+            if (!number) return std::nullopt;
+            numbers.push_back(*number);
+        }
+        return numbers;
+    };
+    add_value(
+        app, "--device", "N[,N...]",
+        "Graphics cards of '--engine gpu', by their numbers in 'graftal version --json', which share the "
+        "picture (default: the first card, and all that have its name)",
+        "a list of whole numbers, such as 0 or 0,1", read,
+        [&options](std::vector<std::size_t> devices) { options.render.devices = std::move(devices); });
+}
 
 /// Only an animation has values that run from A to B.
 bool can_sweep(const CLI::App& app) {
@@ -378,17 +398,16 @@ void add_engine(CLI::App& app, Options& options, const std::string& help,
 }
 
 void add_device(CLI::App& app, Options& options) {
+    const std::string number = "Graphics card of '--engine gpu', by its number in 'graftal version --json'";
     add_value(
-        app, "--device", "N",
-        "Graphics card of '--engine gpu', by its number in 'graftal version --json' (default: the first "
-        "card)",
-        "a whole number, 0 or more", [](const std::string& text) { return parse_whole(text, 0, UINT32_MAX); },
-        [&options](std::uint64_t device) { options.render.device = device; });
+        app, "--device", "N", number + " (default: the first card)", "a whole number, 0 or more",
+        [](const std::string& text) { return parse_whole(text, 0, UINT32_MAX); },
+        [&options](std::uint64_t device) { options.render.devices = {device}; });
 }
 
 void add_drawing(CLI::App& app, Options& options) {
     add_engine(app, options, engines_text(), engine_names());
-    add_device(app, options);
+    add_devices(app, options);
     add_value(
         app, "--samples", "N", "Samples per pixel under soft light; overrides --quality",
         fmt::format("a whole number from 1 to {}", most_samples_a_pixel),

@@ -84,7 +84,7 @@ void add_bits(CLI::App& app, Options& options);
 /// `--engine`, one of these names.
 void add_engine(CLI::App& app, Options& options, const std::string& help,
                 const std::vector<std::string_view>& names);
-/// `--device`, of a graphics card.
+/// `--device`, of one graphics card.
 void add_device(CLI::App& app, Options& options);
 /// Options of commands that make pictures.
 void add_drawing(CLI::App& app, Options& options);

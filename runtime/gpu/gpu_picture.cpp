@@ -109,16 +109,16 @@ Status GpuPicture::sample(Share& share, std::uint32_t count, const Asks& goes_on
     const double row_pixels = static_cast<double>(group_side) * window_.width;
     double pixels = 0;
     for (std::uint32_t done = done_; done < count && own_rows > 0;) {
-        // A piece is several samples of all rows; else one sample, of as many rows as it can be. A device is full
-        // only with many pixels.
+        // A piece is several samples of all rows; else one sample, of as many rows as it can be. A device is
+        // full only with many pixels.
         const double affordable = seconds_a_piece * share.pixels_a_second / row_pixels;
         const std::uint32_t samples = std::min(
             {count - done, most, static_cast<std::uint32_t>(std::clamp(affordable / own_rows, 1.0, 1e6))});
         for (int row = 0; row < own_rows;) {
             if (!goes_on(pixels)) return {};
-            const int rows = samples > 1
-                                 ? own_rows
-                                 : std::min(own_rows - row, static_cast<int>(std::clamp(affordable, 1.0, 1e6)));
+            const int rows =
+                samples > 1 ? own_rows
+                            : std::min(own_rows - row, static_cast<int>(std::clamp(affordable, 1.0, 1e6)));
             const int top = group_side * (share.first + row * in_turn);
             const auto u = [](auto number) { return static_cast<std::uint32_t>(number); };
             const Job job{{u(window_.x), u(window_.y + top), u(window_.width), u(window_.height - top)},
@@ -152,8 +152,8 @@ Status GpuPicture::read_sums(std::vector<glm::vec4>& sums) {
     const std::size_t a_piece = shares_.size() == 1 ? sums.size() : a_row;
     return for_each_share([&](const Share& share) {
         Status status;
-        for (std::size_t at = static_cast<std::size_t>(share.first) * a_piece; at < sums.size() && status.ok();
-             at += shares_.size() * a_piece) {
+        for (std::size_t at = static_cast<std::size_t>(share.first) * a_piece;
+             at < sums.size() && status.ok(); at += shares_.size() * a_piece) {
             const auto own = std::span(sums).subspan(at, std::min(a_piece, sums.size() - at));
             status = share.gpu->read(film_binding, std::as_writable_bytes(own), at * sizeof(glm::vec4));
         }

@@ -72,7 +72,8 @@ class GpuPicture {
     using Asks = std::function<bool(double pixels)>; ///< told of the samples of pixels that were drawn
 
     std::size_t sums_a_pixel() const { return samples_.aovs ? 4 : 2; }
-    /// Does it for each share, on threads of their own. The status is the first failure in the order of shares.
+    /// Does it for each share, on threads of their own. The status is the first failure in the order of
+    /// shares.
     Status for_each_share(const std::function<Status(Share&)>& act);
     /// Draws the samples up to `count`, as long as it `goes_on`.
     Status sample(Share& share, std::uint32_t count, const Asks& goes_on) const;

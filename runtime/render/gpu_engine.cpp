@@ -255,7 +255,7 @@ std::optional<DrawReport> draw(PictureSession& session, const RenderOptions& opt
     if (!compilation.status.ok()) return std::nullopt;
     const CancelFlag cancel = session.control().cancel;
     GpuDrawing drawing(prepared, options, cancel);
-    std::string why = options.aovs     ? "'--aovs' names what each sample meets"
+    std::string why = options.aovs              ? "'--aovs' names what each sample meets"
                       : options.devices.empty() ? why_no_card()
                                                 : "";
     std::optional<FlatModel> model;

@@ -46,7 +46,7 @@ struct RenderOptions : PictureWishes {
     int threads = 0;               ///< 0: as many as the engine likes
     /// Of the GPU engine: numbers of gpu_devices(); empty: all cards of the first one's kind.
     std::vector<std::size_t> devices;
-    bool aovs = false;                 ///< of an EXR: further channels (aov_channels.h)
+    bool aovs = false; ///< of an EXR: further channels (aov_channels.h)
     /// Whether the picture needs what its samples meet, and not only their light.
     bool needs_aovs() const { return aovs || compile.view.transparent; }
     bool progressive = false; ///< write coarse pictures first, each in place of the last

@@ -20,6 +20,7 @@
 #include "runtime/gpu/flat_cells.h"
 #include "runtime/gpu/flat_light.h"
 #include "runtime/gpu/flat_words.h"
+#include "runtime/gpu/near_layers.h"
 
 namespace graftal {
 
@@ -257,6 +258,12 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
     why = lack(request);
     if (!why.empty()) return std::nullopt;
     const TraceBasis basis(request.prepared, request.detail.work_seconds);
+    const Camera& camera = request.view.camera;
+    const Vec3 to_model = basis.bounds.node[basis.layers.cut.root].centre() - camera.location;
+    if (has_near_layers(basis.bounds, camera.orthographic ? glm::dot(to_model, camera.direction) : 0)) {
+        why = "layers nearer to each other than single precision tells";
+        return std::nullopt;
+    }
     std::uint64_t edges = 0;
     for (const DetailNode& node : basis.layers.cut.nodes)
         edges += edge_count(node, false) + node.stop_edges.size();

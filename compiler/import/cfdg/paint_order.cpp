@@ -83,7 +83,7 @@ double least_step_of_sizes(const std::vector<std::vector<PaintedLine>>& objects,
 } // namespace
 
 PaintOrder::PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std::size_t root, double extent,
-                       bool translucent, bool endless)
+                       std::size_t veils, bool endless)
     : heights_(objects.size()) {
     const std::vector<std::size_t> order = from_the_leaves(objects, root);
     std::vector<Spread> spreads(objects.size(), {1, 0}); // those of an object that contains itself stay so
@@ -116,8 +116,9 @@ PaintOrder::PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std
     const double lines = level * levels;
     // Heights of endless paths add up at all sizes, so that they must stay small against the least size.
     const double step = endless ? same_size : 1 - std::exp(-least_step_of_sizes(objects, root));
-    const double gap = translucent ? least_gap_of_veils * extent : flatness * extent * step / lines;
-    const double size = translucent ? gap * lines / std::max(step, same_size_of_veils) : flatness * extent;
+    const double gap = veils > 0 ? static_cast<double>(veils) * least_gap_of_veils * extent
+                                 : flatness * extent * step / lines;
+    const double size = veils > 0 ? gap * lines / std::max(step, same_size_of_veils) : flatness * extent;
     // The height and depth that each object reaches, without depths first, and then with them.
     std::vector<std::pair<double, double>> reach(objects.size());
     const auto find_reach = [&](double depth) {

@@ -24,11 +24,12 @@ struct PaintedLine {
 /// Objects may contain themselves if each call shrinks heights as it shrinks sizes.
 class PaintOrder {
   public:
-    /// `extent` is the size of the picture; `translucent` shapes lie as far apart as an engine must have
-    /// them. `endless`: objects contain themselves, and calls scale the heights below them by their sizes.
-    /// Requires that no such line moves in depth, and of others that no object contains itself. O(lines).
+    /// `extent` is the size of the picture. `veils`: copies of each shape, one over the other, where shapes
+    /// are translucent, which lie as far apart as an engine must have them; else 0. `endless`: objects
+    /// contain themselves, and calls scale the heights below them by their sizes. Requires that no such line
+    /// moves in depth, and of others that no object contains itself. O(lines).
     PaintOrder(const std::vector<std::vector<PaintedLine>>& objects, std::size_t root, double extent,
-               bool translucent, bool endless);
+               std::size_t veils, bool endless);
 
     double height(std::size_t object, std::size_t line) const { return heights_[object][line]; }
     /// The least height of one line over another.

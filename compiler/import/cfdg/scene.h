@@ -46,9 +46,10 @@ class SceneWriter {
     Translation out_{.extension = "inst"};
     int depth_ = 0;
     double camera_height_ = 10;
-    bool translucent_ = false; ///< some colours are
-    double copy_step_ = 0;     ///< of a copy of the whole over the one before it
-    bool deep_ = false;        ///< some shapes move in depth
+    bool translucent_ = false;   ///< some colours are
+    std::vector<Affine> copies_; ///< of the whole: tiles, and by symmetry
+    double copy_step_ = 0;       ///< of a copy of the whole over the one before it
+    bool deep_ = false;          ///< some shapes move in depth
     /// The view of a grammar that says none: where the bounds do not give it. Half of its size.
     std::optional<std::pair<Vec3, Vec3>> middle_and_half_;
 
@@ -61,7 +62,6 @@ class SceneWriter {
     std::set<std::string> names_;
     std::map<std::string, std::string> primitives_; ///< primitives in use
     Lattice lattice_;
-    std::vector<Affine> copies_;
 };
 
 } // namespace graftal::cfdg

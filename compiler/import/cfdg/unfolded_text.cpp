@@ -50,7 +50,7 @@ void Unfolding::find_order(std::size_t first) {
         }
     }
     const double extent = extent_ > 0 ? extent_ : 1;
-    order_.emplace(objects, first, extent, translucent_, endless_);
+    order_.emplace(objects, first, extent, translucent_ ? copies_.size() : 0, endless_);
     copy_step_ = order_->gap();
     camera_height_ = extent + 2 * order_->top();
 }

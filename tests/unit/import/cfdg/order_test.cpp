@@ -56,6 +56,20 @@ TEST(ContextFreeOrder, SmallerShapesLieInFrontHoweverLongALoopIs) {
     }
 }
 
+// Found by a stranger's tiles of half a veil each: 25 copies shared the distance of one.
+TEST(ContextFreeOrder, CopiesOfVeilsLieAsFarApartAsEnginesTell) {
+    const ImportedShapes model("a.cfdg", "startshape A\nCF::Tile = [s 4]\nCF::Size = [s 4]\n"
+                                         "shape A { SQUARE [a -0.5 s 1 16 r -17] }");
+    ASSERT_TRUE(model.graph) << model.said();
+    std::vector<double> heights;
+    for (const UnfoldedLeaf& leaf : model.leaves({}))
+        heights.push_back(leaf.world_from_object.translation.z);
+    ASSERT_GT(heights.size(), 4u);
+    std::ranges::sort(heights);
+    for (std::size_t i = 1; i < heights.size(); ++i)
+        EXPECT_GE(heights[i] - heights[i - 1], 0.99e-5 * 4);
+}
+
 TEST(ContextFreeOrder, TurnsOfLoopsLieOverEachOther) {
     const std::string inner = "shape B { loop 3 [y 1] { SQUARE [] TRIANGLE [b 0.5] } }";
     // A shape's content over that of the same shape before it.

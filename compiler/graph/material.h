@@ -55,6 +55,9 @@ struct Material {
     double surface_filter() const { return absorption > 0 ? 0 : filter; }
     /// Whether it covers what is behind it by a share, and does nothing else to it.
     bool is_veil() const { return is_transparent() && filter == 0 && !has_coat(); }
+    /// Surfaces that a ray meets at most, one behind the other; and where some are veils, which lie in
+    /// stacks: as many as POV-Ray follows.
+    static constexpr unsigned most_surfaces = 32, most_veils = 256;
     /// Whether what it mirrors, or shows behind itself, is blurred.
     bool is_blurred() const { return blur > 0 && (reflection > 0 || is_transparent()); }
     /// Whether it has a clear coat, which reflects more the more a ray grazes it. Light that the coat

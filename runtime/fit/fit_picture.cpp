@@ -35,6 +35,8 @@ ShaderLimits limits_of(const PreparedGraph& prepared, const View& view, const Pi
     }
     ShaderLimits limits;
     limits.farthest = farthest_in_povray / choose_units(drawn, view.camera).scale;
+    if (std::ranges::any_of(prepared.cut.materials, &Material::is_veil))
+        limits.most_surfaces = Material::most_veils;
     if (wishes.listed_lights) limits.list = list_size(view.quality);
     return limits;
 }

@@ -204,7 +204,7 @@ void add_camera(const FlatRequest& request, Scene& scene) {
     const ShaderLimits& limits = request.limits;
     scene.limits = {static_cast<float>(std::min(limits.farthest, infinite)),
                     static_cast<float>(limits.least_weight), static_cast<float>(request.sampling.noise_255),
-                    0};
+                    static_cast<float>(limits.most_surfaces)};
     scene.visits.x = most_steps;
     scene.visits.y = more_steps;
 }

@@ -357,7 +357,13 @@ bool Emitter::write_scene(const View& view, std::vector<PaletteImage>& pictures)
         out_.vector(view.ambient_light(), 7);
     }
     if (needs_fine_bailout()) out_ << " " << fine_bailout;
-    out_ << (leads_on(cut_, view) ? std::string_view(" max_trace_level 32 }\n") : " }\n");
+    if (leads_on(cut_, view)) {
+        const bool has_veils =
+            std::ranges::any_of(cut_.groups, &Material::is_veil, &PlacementGroup::material);
+        out_ << fmt::format(" max_trace_level {}",
+                            has_veils ? Material::most_veils : Material::most_surfaces);
+    }
+    out_ << " }\n";
     std::string ground = view.ground
                              ? textures_.ground(view.ground->material,
                                                 units_.pov_from_world() * world_from_picture(*view.ground))

@@ -89,7 +89,7 @@ struct Scene {
     vec4 haze;     // distance (0: none), base, height (0: even all over), the sun's share
     vec4 haze_rgb; //
     vec4 ambient;  // light; w: exposure
-    vec4 limits;   // farthest, least weight, noise in 255ths
+    vec4 limits;   // farthest, least weight, noise in 255ths, most surfaces of a path
     uvec4 counts;  // lamps, root's box, root's steps, bounces
     uvec4 visits;  // most of a ray, more, ground's material, catcher's material
     uvec4 looks;    // 1 for a soft film

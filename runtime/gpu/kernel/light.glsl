@@ -270,7 +270,7 @@ vec3 radiance(vec3 o, vec3 d, INOUT(Stream) stream) {
             path.least = least_distance(point.position, path.bounces > 0u ? SHADOW_PIXELS : MIRROR_PIXELS);
         }
         ++path.surfaces;
-        ends = ends || !(path.surfaces < MOST_SURFACES + bounces && path.counts >= scene.limits.y);
+        ends = ends || !(path.surfaces < uint(scene.limits.w) + bounces && path.counts >= scene.limits.y);
         if (!ends) continue;
         if (waiting == 0) break;
         --waiting;

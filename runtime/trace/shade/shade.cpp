@@ -19,8 +19,6 @@ namespace graftal {
 
 namespace {
 
-/// max_trace_level of what is emitted.
-constexpr unsigned most_surfaces = 32;
 /// The share of a zenith that the emitted sky reaches (povray/emit/view.cpp).
 constexpr double most_zenith = 0.999999;
 /// Distance of the start of mirrored rays, in pixels: a tenth of shadow_pixels, as in POV-Ray.
@@ -167,7 +165,7 @@ Rgb Shader::radiance(const Ray& ray, SampleStream& random, SurfaceHit* first, co
 /// The light that comes along a path, without what waits then.
 Rgb Shader::follow(Path& path, SampleStream& random, SurfaceHit* first, const Known* known) {
     Rgb sum(0.0);
-    const unsigned most = most_surfaces + bounces_;
+    const unsigned most = limits_.most_surfaces + bounces_;
     for (; path.surfaces < most && path.counts >= limits_.least_weight; ++path.surfaces) {
         SurfaceHit hit;
         const bool found = closest(path.ray, path.range, hit, path.surfaces == 0 ? known : nullptr);

@@ -25,6 +25,8 @@ struct ShaderLimits {
     double farthest = std::numeric_limits<double>::infinity();
     /// Reflected rays that would count for less: its adc_bailout.
     double least_weight = 1.0 / 255;
+    /// Surfaces one behind the other: its max_trace_level.
+    unsigned most_surfaces = Material::most_surfaces;
     /// Soft light comes from the lights of this list; nothing: from samples of it.
     std::optional<LightListSize> list;
 };

@@ -120,7 +120,7 @@ class Flattener {
 
     void add_node(const FlatNode& node, std::span<const std::uint32_t> shallow) {
         std::uint32_t flags = 0, tree = NONE, stop_tree = NONE;
-        float shape = 0, inner_radius = 1;
+        float repeats_u = 0, shape = 0, inner_radius = 1;
         if (node.primitive != flat_none) {
             const Primitive& primitive = graph_.primitives[node.primitive];
             tree = meshes_[node.primitive];
@@ -129,6 +129,11 @@ class Flattener {
             if (primitive == PrimitiveKind::cylinder || primitive == PrimitiveKind::cone ||
                 primitive == PrimitiveKind::frustum)
                 shape = static_cast<float>(top_radius(primitive));
+            if (tree != NONE) {
+                const TextureWrap& wrap = traits_of(primitive).wrap;
+                repeats_u = wrap.around ? 1 : 0;
+                shape = wrap.evenly ? 1 : 0;
+            }
             if (encloses_volume(primitive)) flags |= NODE_SOLID;
             inner_radius = static_cast<float>(traits_of(primitive).inner_radius(primitive));
         } else {
@@ -152,7 +157,7 @@ class Flattener {
         flat_.nodes.push_back(of_paint(node.mean));
         flat_.nodes.push_back(node.primitive == flat_none ? of_paint(node.proxy)
                                                           : extents(graph_.primitives[node.primitive]));
-        flat_.nodes.emplace_back(flat_bits(material_number(node.finish)), 0.0f, shape, inner_radius);
+        flat_.nodes.emplace_back(flat_bits(material_number(node.finish)), repeats_u, shape, inner_radius);
         flat_.nodes.emplace_back(0);
     }
 

@@ -26,16 +26,19 @@ float turn_about_y(vec3 point) {
     return atan(point.x, point.z) / (2.0f * PI);
 }
 
-/// The place in the picture that is wrapped round a primitive (PrimitiveTraits::texture_point). `turns`: its
-/// length_in_turns().
-vec2 texture_place(Site site, float around, float turns) {
+/// The place in the picture that is wrapped round the primitive of a part (PrimitiveTraits::texture_point).
+vec2 texture_place(Site site, float around, uint part) {
     const vec3 p = site.point;
-    if (site.kind == KIND_MESH) return site.uv;
+    if (site.kind == KIND_MESH) {
+        const vec4 repeats = nodes(node_of(part) * NODE_SIZE + NODE_LOOK);
+        return site.uv * vec2(repeats.y > 0.0f ? around : 1.0f, repeats.z > 0.0f ? around : 1.0f);
+    }
     if (site.kind == KIND_TRIANGLE) return vec2(0.5f + p.x / 1.7320508f, (p.y + 0.5f) / 1.5f);
     if (site.kind == KIND_CUBE) return 0.5f * vec2(p.x + 1.0f, p.y + 1.0f);
     const float u = around * turn_about_y(p);
     if (site.kind == KIND_SPHERE) return vec2(u, 0.5f + asin(clamp(p.y / length(p), -1.0f, 1.0f)) / PI);
     if (site.kind == KIND_TORUS) return vec2(u, atan(p.y, length(vec2(p.x, p.z)) - 1.0f) / (2.0f * PI));
+    const float turns = looks(part * LOOK_SIZE + 1u).x; // length_in_turns()
     return vec2(u, clamp(floor(around * turns + 0.5f), 1.0f, 1e6f) * p.y);
 }
 
@@ -44,9 +47,9 @@ float linear_of_srgb(float level) {
 }
 
 /// The texel of a material's picture: its light, and 1 where it is clear.
-vec4 texel_of(uint material, Site site, float turns) {
+vec4 texel_of(uint material, Site site, uint part) {
     const vec4 picture = materials(material * MATERIAL_SIZE + 5u);
-    const vec2 place = texture_place(site, picture.w, turns);
+    const vec2 place = texture_place(site, picture.w, part);
     const vec2 within = place - floor(place);
     const float x = min(floor(within.x * picture.y), picture.y - 1.0f),
                 y = picture.z - 1.0f - min(floor(within.y * picture.z), picture.z - 1.0f);
@@ -66,7 +69,7 @@ bool is_clear(int last, uint part, Site site) {
     for (int i = last; i > 0 && material == NONE; --i)
         material = bits_of(parts(part_at(i) * PART_SIZE + 3u)).z;
     if (material == NONE || !has_picture(material)) return false;
-    return texel_of(material, site, looks(part * LOOK_SIZE + 1u).x).w > 0.0f;
+    return texel_of(material, site, part).w > 0.0f;
 }
 
 /// The nearest thing that a ray has met so far. Only at the end of the walk is it worth looking at: most rays meet some
@@ -129,7 +132,7 @@ void look_along(Meeting meeting, INOUT(Hit) hit) {
         const uint finish = bits_of(nodes(node * NODE_SIZE + NODE_LOOK)).x;
         if (finish != NONE) hit.material = finish;
     } else if (has_picture(hit.material)) {
-        inherited = xyz_of(texel_of(hit.material, meeting.site, looks(meeting.part * LOOK_SIZE + 1u).x));
+        inherited = xyz_of(texel_of(hit.material, meeting.site, meeting.part));
     }
     hit.rgb = xyz_of(tint) + tint.w * inherited;
     hit.tint = tint;

@@ -238,6 +238,47 @@ TEST(GpuKernel, ShowsPatterns) {
     }
 }
 
+/// A picture of two smooth slopes: u is red and v is green.
+std::shared_ptr<const Texture> slopes() {
+    Texture picture;
+    picture.width = picture.height = 256;
+    for (int y = 0; y < 256; ++y)
+        for (int x = 0; x < 256; ++x)
+            picture.texels.push_back({.srgb = {static_cast<std::uint8_t>(std::abs(2 * x - 255)),
+                                               static_cast<std::uint8_t>(std::abs(2 * y - 255)), 0}});
+    picture.coverage = 1;
+    return std::make_shared<const Texture>(picture);
+}
+
+/// The kernel meets some primitives as meshes whose points are for a picture that goes round once.
+TEST(GpuKernel, RepeatsPicturesOnMeshesAsTheirMaterialsSay) {
+    std::string fault;
+    const auto made = [&](PrimitiveKind kind, const std::vector<double>& numbers) {
+        const std::optional<Primitive> primitive = traits_of(kind).make(numbers, fault);
+        EXPECT_TRUE(primitive) << fault;
+        return primitive.value_or(PrimitiveKind::sphere);
+    };
+    for (const Primitive& primitive :
+         {made(PrimitiveKind::limb_sweep, {16, 0, 0, 0, -1, 0, 0.5, 0, 1, 0, 0.4}),
+          made(PrimitiveKind::superellipsoid, {0.8, 0.7}),
+          made(PrimitiveKind::sphere_sweep, {0, -1, 0, 0.4, 0.2, 0, 0, 0.4, 0, 1, 0, 0.4})}) {
+        Graph graph = test::empty_graph();
+        Material bark;
+        bark.name = "bark";
+        bark.texture = "bark.png";
+        bark.around = 3;
+        graph.materials = {bark};
+        test::place(graph, graph.root, graph.primitive(primitive), Affine::rotate(Vec3(1, 0, 0), 0.4));
+        graph.objects[graph.root].instances.front().material = 0;
+        const auto plain = test::traced(graph, {});
+        const TraceModel model(plain->shared, plain->view, {}, {.of_material = {slopes()}, .of_ground = {}});
+        const Comparison seen = compare(model, 2000, 11);
+        EXPECT_GT(seen.hits, 50);
+        EXPECT_LE(seen.differ, 4);
+        EXPECT_LT(seen.colour, 0.05);
+    }
+}
+
 TEST(GpuKernel, SaysWhatItCannotDraw) {
     Graph graph = test::empty_graph();
     test::place(graph, graph.root, graph.primitive(PrimitiveKind::cube), Affine::scale(Vec3(1, 0, 1)));

@@ -64,6 +64,11 @@
 // its picture: the first of its texels in texels[] or NONE, its width and height, and how often it goes round.
 #define MATERIAL_SIZE 6u
 
+// A hit of a set in a plane is near enough, or plenty, if none can be nearer by more than these shares of the half
+// width.
+#define NEAR_ENOUGH_SHARE 0.25f
+#define PLENTY_SHARE 1e-4f
+
 struct Lamp {
     vec4 at;  // of a sun: the unit vector towards it; w: 1 for a sun
     vec4 rgb; // w: 1 if it throws no shadows
@@ -76,6 +81,8 @@ struct Scene {
     vec4 right, up, direction; // of the camera; w: half width, half height, 1 if its rays are parallel
     vec4 lens;                 // radius, depth, the length of a pixel
     vec4 widths;               // least half width over the error, how far it reaches, the world's margin
+    vec4 plane;       // of a set that lies in one (NearEnough): its normal (0: none), its height from the eye
+    vec4 plane_parts; // the most half width; the reaches of widened parts and of terminals; patience
     vec4 projection;           // pixels per tangent over the error, nearest distance, error in the world, culls
     vec4 edges;                // sine and cosine of half the angle of view, across and up
     vec4 sky_zenith, sky_horizon, sky_axis; // w: from, slope, 1 if the sky's light is shown

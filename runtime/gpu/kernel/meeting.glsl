@@ -149,10 +149,15 @@ float pattern_size_of(Meeting meeting) {
     return middle > 0.0f && middle < FAR ? exp2(0.5f * floor(2.0f * log2(middle) + 0.5f)) : 1.0f;
 }
 
+/// Where the frame of a part begins, in the frame that holds it.
+vec3 origin_of(uint part) {
+    const uint first = part * PART_SIZE;
+    return vec3(parts(first).w, parts(first + 1u).w, parts(first + 2u).w);
+}
+
 /// A point of a part in the frame that holds it.
 vec3 point_above(uint part, vec3 point) {
-    const uint first = part * PART_SIZE;
-    return inverse_of_part(part) * point + vec3(parts(first).w, parts(first + 1u).w, parts(first + 2u).w);
+    return inverse_of_part(part) * point + origin_of(part);
 }
 
 /// The limit's normal where the proxy of a node is met (limit_normal() of runtime/trace).
@@ -183,6 +188,39 @@ vec3 limit_normal(Meeting meeting) {
     return sum;
 }
 
+/// limit_normal_in_world() of runtime/trace, for what is drawn wider than it is. `normal`: its own; `place`: where the
+/// ray meets it.
+vec3 limit_normal_in_world(Meeting meeting, vec3 normal, vec3 place) {
+    const int most_levels = LIMIT_LEVELS;
+    mat3 space = mat3(1.0f); // to the world from within the part
+    vec3 middle = vec3(0.0f);
+    for (int i = 1; i <= meeting.last; ++i) {
+        middle += space * origin_of(met_part(i));
+        space = space * inverse_of_part(met_part(i));
+    }
+    vec3 sum = normal;
+    int level = 0;
+    float weight = 1.0f;
+    for (int i = meeting.last; i > 0; --i) {
+        for (uint part = met_part(i), before; part != NONE && level < most_levels; part = before) {
+            const uvec4 passed = bits_of(looks(part * LOOK_SIZE + 1u));
+            before = passed.y;
+            if (i == 1 && before == NONE) break;
+            const uint step = before == NONE ? part : passed.z, first = step * PART_SIZE;
+            space = space * transpose(mat3(xyz_of(parts(first)), xyz_of(parts(first + 1u)), xyz_of(parts(first + 2u))));
+            middle -= space * origin_of(step);
+            const uint node = node_of(before == NONE ? met_part(i - 1) : before) * NODE_SIZE;
+            if ((bits_of(nodes(node + NODE_FACTS)).y & NODE_UNENDING) == 0u) continue;
+            ++level;
+            weight /= LIMIT_RATIO;
+            const vec4 ball = nodes(node + NODE_BALL);
+            const float radius = largest_stretch(space) * ball.w;
+            if (radius > 0.0f) sum += weight / radius * (place - middle - space * xyz_of(ball));
+        }
+    }
+    return sum;
+}
+
 /// From the face of a sheet that was met to the other; 0 where it is none (Traversal::to_far_side_at_best()).
 vec3 to_far_side(Meeting meeting, vec3 direction) {
     const uint node = bits_of(parts(meeting.part * PART_SIZE + 3u)).y * NODE_SIZE;
@@ -200,16 +238,18 @@ vec3 to_far_side(Meeting meeting, vec3 direction) {
 }
 
 /// Shows what the ray has met.
-void take_hit(Meeting meeting, vec3 direction, INOUT(Hit) hit) {
+void take_hit(Meeting meeting, vec3 origin, vec3 direction, INOUT(Hit) hit) {
     hit.is_level = false;
     look_along(meeting, hit);
     vec3 n = meeting.normal;
-    if (meeting.is_proxy) {
+    const bool widened = FAINTS && meeting.widened;
+    if (meeting.is_proxy && !widened) {
         n = limit_normal(meeting);
     } else {
-        n = normal_above(meeting.part, n);
+        n = meeting.is_proxy ? normalize(n) : normal_above(meeting.part, n);
         for (int i = meeting.last; i > 0; --i)
             n = normal_above(met_part(i), n);
+        if (meeting.is_proxy) n = limit_normal_in_world(meeting, n, origin + hit.t * direction);
     }
     const float length2 = dot(n, n);
     hit.normal = length2 > 0.0f ? n * inversesqrt(length2) : vec3(0.0f, 1.0f, 0.0f);

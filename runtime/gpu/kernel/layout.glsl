@@ -100,11 +100,15 @@ struct Scene {
     vec4 limits;   // farthest, least weight, noise in 255ths
     uvec4 counts;  // lamps, root's box, root's steps, bounces
     uvec4 visits;  // most of a ray, more, ground's material, catcher's material
-    uvec4 looks;    // 1 for a soft film
+    uvec4 looks;    // 1 for a soft film; 2 rounds, for ends_loops_early()
     uvec4 tables; // the pixel filter's in texels[]; 1 if some texel of a surface is clear; patterns' waves in texels[]
     vec4 eye;     // in the world of the model
     Lamp lamps[MOST_LAMPS + 1u]; // after the last the sun that haze shows in shafts
 };
+
+// Counts of steps, in thousands, that tell what went wrong.
+#define STEPS_LOST 1e30f
+#define STEPS_ENDED 1e37f
 
 // Entries of the pixel filter's table, less one.
 #define FILTER_STEPS 256

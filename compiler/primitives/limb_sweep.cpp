@@ -375,7 +375,7 @@ std::size_t limb_triangles(const Primitive& limb) {
 constinit const PrimitiveTraits limb_sweep_traits = [] {
     PrimitiveTraits row =
         triangle_mesh::traits({head_numbers + 8, head_numbers + 4 * most_limb_points}, make);
-    row.wrap = {.around = true};
+    row.wrap = {.around = true, .evenly = true};
     row.texture_point = texture_point;
     row.texture_triangle = texture_triangle;
     return row;

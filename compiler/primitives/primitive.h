@@ -57,6 +57,7 @@ struct TextureWrap {
     bool around = false; ///< u goes round the y axis, and as many pictures as the material says
     bool along = false;  ///< v goes along the y axis: as many as keep the proportions
     bool tube = false;   ///< v goes round, too
+    bool evenly = false; ///< v of a mesh has as many as u: its points are for one picture
 };
 
 /// Where a picture is wrapped round a primitive (texture_space.h).

@@ -251,7 +251,7 @@ void add_light(const FlatRequest& request, FlatModel& flat) {
     flat.features.glassy = !opaque;
     flat.features.translucent =
         std::ranges::any_of(materials, [](const Material& material) { return material.translucency > 0; });
-    scene.looks = {view.film.soft ? 1 : 0, 0, 0, 0};
+    scene.looks = {view.film.soft ? 1 : 0, 2, 0, 0};
     if (flat.features.patterned) add_waves(flat);
     scene.tables.x = static_cast<std::uint32_t>(flat.texels.size());
     const PixelFilter filter;

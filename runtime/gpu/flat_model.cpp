@@ -121,7 +121,7 @@ class Flattener {
 
     void add_node(const FlatNode& node, std::span<const std::uint32_t> shallow) {
         std::uint32_t flags = 0, tree = NONE, stop_tree = NONE;
-        float shape = 0, inner_radius = 1;
+        float repeats_u = 0, shape = 0, inner_radius = 1;
         if (node.primitive != flat_none) {
             const Primitive& primitive = graph_.primitives[node.primitive];
             tree = meshes_[node.primitive];
@@ -130,6 +130,11 @@ class Flattener {
             if (primitive == PrimitiveKind::cylinder || primitive == PrimitiveKind::cone ||
                 primitive == PrimitiveKind::frustum)
                 shape = static_cast<float>(top_radius(primitive));
+            if (tree != NONE) {
+                const TextureWrap& wrap = traits_of(primitive).wrap;
+                repeats_u = wrap.around ? 1 : 0;
+                shape = wrap.evenly ? 1 : 0;
+            }
             if (encloses_volume(primitive)) flags |= NODE_SOLID;
             inner_radius = static_cast<float>(traits_of(primitive).inner_radius(primitive));
         } else {
@@ -153,7 +158,7 @@ class Flattener {
         flat_.nodes.push_back(of_paint(node.mean));
         flat_.nodes.push_back(node.primitive == flat_none ? of_paint(node.proxy)
                                                           : extents(graph_.primitives[node.primitive]));
-        flat_.nodes.emplace_back(flat_bits(material_number(node.finish)), 0.0f, shape, inner_radius);
+        flat_.nodes.emplace_back(flat_bits(material_number(node.finish)), repeats_u, shape, inner_radius);
         flat_.nodes.emplace_back(0);
     }
 
@@ -245,6 +250,22 @@ bool needs_pairs(const View& view, const Box& drawn) {
     return !(size < most_pixels * pixel);
 }
 
+/// Where the whole model is a set in a plane, rays need not look for the nearest of thousands of parts.
+void add_plane(const FlatRequest& request, const TraceBasis& basis, kernel_layout::Scene& scene) {
+    static_assert(NEAR_ENOUGH_SHARE == near_enough_share && PLENTY_SHARE == static_cast<float>(plenty_share));
+    const DetailGraph& cut = request.prepared.cut;
+    const DetailNode& root = cut.nodes[cut.root];
+    const Projection projection(request.view, request.detail, request.detail.error_px, nearest_to_eye(cut));
+    const double most_half_width = root.widens ? projection.most_half_width(root.ball) : 0;
+    const NearEnough plane(request.prepared, basis, most_half_width, projection.error_px());
+    if (plane.axis < 0) return;
+    Vec3 normal(0.0);
+    normal[plane.axis] = 1;
+    scene.plane = flat_four(normal, plane.middle - request.view.camera.location[plane.axis]);
+    scene.plane_parts =
+        flat_four({most_half_width, plane.widened_reach, plane.terminal_reach}, most_patience);
+}
+
 } // namespace
 
 std::uint64_t FlatModel::bytes() const {
@@ -294,6 +315,7 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
     }
     flat.source = basis.layers.source;
     add_light(request, flat);
+    add_plane(request, basis, flat.scene);
     return flat;
 }
 

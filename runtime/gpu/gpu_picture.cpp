@@ -27,11 +27,15 @@ constexpr std::size_t scene_binding = 7, film_binding = 9;
 /// Pixels along each side of a group's tile.
 constexpr int group_side = 8;
 constexpr double seconds_a_piece = 0.03;
-/// Steps of a pixel that tell that a part had no room.
-constexpr float lost_steps = 1e29f;
 /// Software devices end loops after some ten thousand rounds in all, so that each sample has to be a piece of
 /// its own (Mesa's llvmpipe).
 constexpr std::uint32_t most_samples_by_software = 1;
+
+/// `steps`: that some pixel has counted.
+Status status_of(float steps) {
+    return steps >= STEPS_ENDED ? Status::failure("the device ends the loops of rays before their time")
+                                : Status();
+}
 
 template<typename Value> std::span<const std::byte> bytes_of(const std::vector<Value>& values) {
     return std::as_bytes(std::span(values));
@@ -176,7 +180,8 @@ Status GpuPicture::read_aovs(const FlatModel& model, AovPicture& aovs, bool& los
             static_cast<std::uint32_t>(nearest.x) << 16 | static_cast<std::uint32_t>(nearest.y);
         pixel.node = node < model.source.size() ? model.source[node] : node;
         pixel.levels = static_cast<std::uint32_t>(nearest.z);
-        lost = lost || nearest.w > 0;
+        if (Status status = status_of(nearest.w); !status.ok()) return status;
+        lost = lost || nearest.w >= STEPS_LOST;
         if (!(sum.x > 0)) continue;
         pixel.coverage = sum.x / whole;
         pixel.depth = sum.y / sum.x;
@@ -200,7 +205,8 @@ Status GpuPicture::read(const Film& film, double noise_255, Image& picture, Seen
             picture.pixels[3 * i + static_cast<std::size_t>(c)] = sum.w > 0 ? sum[c] / sum.w : 0;
         seen.samples += static_cast<double>(sum.w);
         seen.rays += 1e3 * static_cast<double>(spread.w);
-        seen.lost = seen.lost || spread.z >= lost_steps;
+        if (Status status = status_of(spread.z); !status.ok()) return status;
+        seen.lost = seen.lost || spread.z >= STEPS_LOST;
         seen.steps += 1e3 * static_cast<double>(spread.z);
         if (samples_.lattice > 0 || !(sum.w > 1)) continue;
         const double mean = spread.x, count = sum.w;

@@ -52,7 +52,7 @@ class GpuPicture {
         std::uint64_t noisy = 0; ///< pixels with more noise than is asked for
     };
     /// Gives the counts, and the mean light of the pixels to `picture`, which has three channels and the size
-    /// of the window.
+    /// of the window. Fails where a device by software has ended rays that took long.
     Status read(const Film& film, double noise_255, Image& picture, Seen& seen);
 
     /// Gives the values of each pixel of the window; `lost` as above. Requires Samples::aovs; `model` is the

@@ -9,7 +9,7 @@ struct Frame {
     vec3 direction;
     float unit;
     float scale;  // norm of the map to the world; the unit, unless STRETCHED
-    float margin; // by which parts may reach out of their boxes, where FAINTS
+    vec3 margin;  // by which parts may reach out of their boxes along each axis, where FAINTS
     uint steps;   // levels that are left
     uint part;    // the last on the way
     int waiting;  // entries that waited when the ray came here
@@ -29,7 +29,8 @@ void keep(int at, Frame frame) {
     const uint marks = (frame.part & FRAME_PART) | (frame.cut ? FRAME_CUT : 0u) | (frame.faint ? FRAME_FAINT : 0u);
     frame_marks[at] = uvec4(word_of(frame.unit), frame.steps, marks, uint(frame.waiting));
     if (!EVEN) frame_directions[at] = frame.direction;
-    if (STRETCHED || FAINTS) frame_sizes[at] = vec2(frame.scale, frame.margin);
+    if (STRETCHED || FAINTS) frame_scales[at] = frame.scale;
+    if (FAINTS) frame_margins[at] = frame.margin;
     if (PAIRED) frame_lows[at] = frame.low;
 }
 
@@ -46,11 +47,9 @@ Frame kept(int at, vec3 direction) {
     if (!EVEN) frame.direction = frame_directions[at];
     frame.unit = float_of(marks.x);
     frame.scale = frame.unit;
-    frame.margin = 0.0f;
-    if (STRETCHED || FAINTS) {
-        frame.scale = frame_sizes[at].x;
-        frame.margin = frame_sizes[at].y;
-    }
+    if (STRETCHED || FAINTS) frame.scale = frame_scales[at];
+    frame.margin = vec3(0.0f);
+    if (FAINTS) frame.margin = frame_margins[at];
     frame.steps = marks.y;
     frame.part = marks.z & FRAME_PART;
     frame.waiting = int(marks.w);
@@ -178,10 +177,10 @@ mat3 squeezing(mat3 world_from_ball, float width) {
     return axes * shares * transpose(axes);
 }
 
-/// Half of the largest extent along an axis of a frame that a ball of the world has there, which has 1.
-float most_extent(mat3 space) {
+/// Half of the extents along the axes of a frame that a ball of the world has there, which has 1.
+vec3 extents_of_ball(mat3 space) {
     const vec3 bc = cross(space[1], space[2]), ca = cross(space[2], space[0]), ab = cross(space[0], space[1]);
-    return max(length(bc), max(length(ca), length(ab))) / abs(dot(space[0], bc));
+    return vec3(length(bc), length(ca), length(ab)) / abs(dot(space[0], bc));
 }
 
 /// Places a part, whose map has these rows, into the space of frame `at`, of this scale; the norm of the map to the

@@ -31,7 +31,8 @@
 #define NODE_MEAN 5u    // the mean colour: what is fixed, and how much is open
 #define NODE_STANDIN 6u // likewise, of its proxy; of a primitive half of its extents, and w: 1 if it is bounded
 #define NODE_LOOK 7u    // the proxy's material, nothing, the radius at the end of what tapers, of a primitive the
-                        // radius of the largest ball in it
+                        // radius of the largest ball in it; of a mesh 1 where its material says how many
+                        // pictures lie along u, and likewise v
 #define NODE_CELLS 8u   // where its cells of several levels begin in nodes[], the deepest first, and how many there are; of
                         // each FlatCell the least size, the reach, the tree, the least steps
 
@@ -63,6 +64,11 @@
 // its picture: the first of its texels in texels[] or NONE, its width and height, and how often it goes round.
 #define MATERIAL_SIZE 6u
 
+// A hit of a set in a plane is near enough, or plenty, if none can be nearer by more than these shares of the half
+// width.
+#define NEAR_ENOUGH_SHARE 0.25f
+#define PLENTY_SHARE 1e-4f
+
 struct Lamp {
     vec4 at;  // of a sun: the unit vector towards it; w: 1 for a sun
     vec4 rgb; // w: 1 if it throws no shadows
@@ -75,6 +81,8 @@ struct Scene {
     vec4 right, up, direction; // of the camera; w: half width, half height, 1 if its rays are parallel
     vec4 lens;                 // radius, depth, the length of a pixel
     vec4 widths;               // least half width over the error, how far it reaches, the world's margin
+    vec4 plane;       // of a set that lies in one (NearEnough): its normal (0: none), its height from the eye
+    vec4 plane_parts; // the most half width; the reaches of widened parts and of terminals; patience
     vec4 projection;           // pixels per tangent over the error, nearest distance, error in the world, culls
     vec4 edges;                // sine and cosine of half the angle of view, across and up
     vec4 sky_zenith, sky_horizon, sky_axis; // w: from, slope, 1 if the sky's light is shown
@@ -92,11 +100,15 @@ struct Scene {
     vec4 limits;   // farthest, least weight, noise in 255ths, most surfaces of a path
     uvec4 counts;  // lamps, root's box, root's steps, bounces
     uvec4 visits;  // most of a ray, more, ground's material, catcher's material
-    uvec4 looks;    // 1 for a soft film
+    uvec4 looks;    // 1 for a soft film; 2 rounds, for ends_loops_early()
     uvec4 tables; // the pixel filter's in texels[]; 1 if some texel of a surface is clear; patterns' waves in texels[]
     vec4 eye;     // in the world of the model
     Lamp lamps[MOST_LAMPS + 1u]; // after the last the sun that haze shows in shafts
 };
+
+// Counts of steps, in thousands, that tell what went wrong.
+#define STEPS_LOST 1e30f
+#define STEPS_ENDED 1e37f
 
 // Entries of the pixel filter's table, less one.
 #define FILTER_STEPS 256

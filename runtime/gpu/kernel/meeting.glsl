@@ -26,16 +26,19 @@ float turn_about_y(vec3 point) {
     return atan(point.x, point.z) / (2.0f * PI);
 }
 
-/// The place in the picture that is wrapped round a primitive (PrimitiveTraits::texture_point). `turns`: its
-/// length_in_turns().
-vec2 texture_place(Site site, float around, float turns) {
+/// The place in the picture that is wrapped round the primitive of a part (PrimitiveTraits::texture_point).
+vec2 texture_place(Site site, float around, uint part) {
     const vec3 p = site.point;
-    if (site.kind == KIND_MESH) return site.uv;
+    if (site.kind == KIND_MESH) {
+        const vec4 repeats = nodes(node_of(part) * NODE_SIZE + NODE_LOOK);
+        return site.uv * vec2(repeats.y > 0.0f ? around : 1.0f, repeats.z > 0.0f ? around : 1.0f);
+    }
     if (site.kind == KIND_TRIANGLE) return vec2(0.5f + p.x / 1.7320508f, (p.y + 0.5f) / 1.5f);
     if (site.kind == KIND_CUBE) return 0.5f * vec2(p.x + 1.0f, p.y + 1.0f);
     const float u = around * turn_about_y(p);
     if (site.kind == KIND_SPHERE) return vec2(u, 0.5f + asin(clamp(p.y / length(p), -1.0f, 1.0f)) / PI);
     if (site.kind == KIND_TORUS) return vec2(u, atan(p.y, length(vec2(p.x, p.z)) - 1.0f) / (2.0f * PI));
+    const float turns = looks(part * LOOK_SIZE + 1u).x; // length_in_turns()
     return vec2(u, clamp(floor(around * turns + 0.5f), 1.0f, 1e6f) * p.y);
 }
 
@@ -44,9 +47,9 @@ float linear_of_srgb(float level) {
 }
 
 /// The texel of a material's picture: its light, and 1 where it is clear.
-vec4 texel_of(uint material, Site site, float turns) {
+vec4 texel_of(uint material, Site site, uint part) {
     const vec4 picture = materials(material * MATERIAL_SIZE + 5u);
-    const vec2 place = texture_place(site, picture.w, turns);
+    const vec2 place = texture_place(site, picture.w, part);
     const vec2 within = place - floor(place);
     const float x = min(floor(within.x * picture.y), picture.y - 1.0f),
                 y = picture.z - 1.0f - min(floor(within.y * picture.z), picture.z - 1.0f);
@@ -66,7 +69,7 @@ bool is_clear(int last, uint part, Site site) {
     for (int i = last; i > 0 && material == NONE; --i)
         material = bits_of(parts(part_at(i) * PART_SIZE + 3u)).z;
     if (material == NONE || !has_picture(material)) return false;
-    return texel_of(material, site, looks(part * LOOK_SIZE + 1u).x).w > 0.0f;
+    return texel_of(material, site, part).w > 0.0f;
 }
 
 /// The nearest thing that a ray has met so far. Only at the end of the walk is it worth looking at: most rays meet some
@@ -129,7 +132,7 @@ void look_along(Meeting meeting, INOUT(Hit) hit) {
         const uint finish = bits_of(nodes(node * NODE_SIZE + NODE_LOOK)).x;
         if (finish != NONE) hit.material = finish;
     } else if (has_picture(hit.material)) {
-        inherited = xyz_of(texel_of(hit.material, meeting.site, looks(meeting.part * LOOK_SIZE + 1u).x));
+        inherited = xyz_of(texel_of(hit.material, meeting.site, meeting.part));
     }
     hit.rgb = xyz_of(tint) + tint.w * inherited;
     hit.tint = tint;
@@ -146,10 +149,15 @@ float pattern_size_of(Meeting meeting) {
     return middle > 0.0f && middle < FAR ? exp2(0.5f * floor(2.0f * log2(middle) + 0.5f)) : 1.0f;
 }
 
+/// Where the frame of a part begins, in the frame that holds it.
+vec3 origin_of(uint part) {
+    const uint first = part * PART_SIZE;
+    return vec3(parts(first).w, parts(first + 1u).w, parts(first + 2u).w);
+}
+
 /// A point of a part in the frame that holds it.
 vec3 point_above(uint part, vec3 point) {
-    const uint first = part * PART_SIZE;
-    return inverse_of_part(part) * point + vec3(parts(first).w, parts(first + 1u).w, parts(first + 2u).w);
+    return inverse_of_part(part) * point + origin_of(part);
 }
 
 /// The limit's normal where the proxy of a node is met (limit_normal() of runtime/trace).
@@ -180,6 +188,39 @@ vec3 limit_normal(Meeting meeting) {
     return sum;
 }
 
+/// limit_normal_in_world() of runtime/trace, for what is drawn wider than it is. `normal`: its own; `place`: where the
+/// ray meets it.
+vec3 limit_normal_in_world(Meeting meeting, vec3 normal, vec3 place) {
+    const int most_levels = LIMIT_LEVELS;
+    mat3 space = mat3(1.0f); // to the world from within the part
+    vec3 middle = vec3(0.0f);
+    for (int i = 1; i <= meeting.last; ++i) {
+        middle += space * origin_of(met_part(i));
+        space = space * inverse_of_part(met_part(i));
+    }
+    vec3 sum = normal;
+    int level = 0;
+    float weight = 1.0f;
+    for (int i = meeting.last; i > 0; --i) {
+        for (uint part = met_part(i), before; part != NONE && level < most_levels; part = before) {
+            const uvec4 passed = bits_of(looks(part * LOOK_SIZE + 1u));
+            before = passed.y;
+            if (i == 1 && before == NONE) break;
+            const uint step = before == NONE ? part : passed.z, first = step * PART_SIZE;
+            space = space * transpose(mat3(xyz_of(parts(first)), xyz_of(parts(first + 1u)), xyz_of(parts(first + 2u))));
+            middle -= space * origin_of(step);
+            const uint node = node_of(before == NONE ? met_part(i - 1) : before) * NODE_SIZE;
+            if ((bits_of(nodes(node + NODE_FACTS)).y & NODE_UNENDING) == 0u) continue;
+            ++level;
+            weight /= LIMIT_RATIO;
+            const vec4 ball = nodes(node + NODE_BALL);
+            const float radius = largest_stretch(space) * ball.w;
+            if (radius > 0.0f) sum += weight / radius * (place - middle - space * xyz_of(ball));
+        }
+    }
+    return sum;
+}
+
 /// From the face of a sheet that was met to the other; 0 where it is none (Traversal::to_far_side_at_best()).
 vec3 to_far_side(Meeting meeting, vec3 direction) {
     const uint node = bits_of(parts(meeting.part * PART_SIZE + 3u)).y * NODE_SIZE;
@@ -197,16 +238,18 @@ vec3 to_far_side(Meeting meeting, vec3 direction) {
 }
 
 /// Shows what the ray has met.
-void take_hit(Meeting meeting, vec3 direction, INOUT(Hit) hit) {
+void take_hit(Meeting meeting, vec3 origin, vec3 direction, INOUT(Hit) hit) {
     hit.is_level = false;
     look_along(meeting, hit);
     vec3 n = meeting.normal;
-    if (meeting.is_proxy) {
+    const bool widened = FAINTS && meeting.widened;
+    if (meeting.is_proxy && !widened) {
         n = limit_normal(meeting);
     } else {
-        n = normal_above(meeting.part, n);
+        n = meeting.is_proxy ? normalize(n) : normal_above(meeting.part, n);
         for (int i = meeting.last; i > 0; --i)
             n = normal_above(met_part(i), n);
+        if (meeting.is_proxy) n = limit_normal_in_world(meeting, n, origin + hit.t * direction);
     }
     const float length2 = dot(n, n);
     hit.normal = length2 > 0.0f ? n * inversesqrt(length2) : vec3(0.0f, 1.0f, 0.0f);

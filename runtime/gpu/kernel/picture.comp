@@ -21,7 +21,8 @@
     vec4 frame_places[MOST_FRAMES]; \
     uvec4 frame_marks[MOST_FRAMES]; \
     vec3 frame_directions[EVEN ? 2 : MOST_FRAMES]; \
-    vec2 frame_sizes[STRETCHED || FAINTS ? MOST_FRAMES : 2]; \
+    float frame_scales[STRETCHED || FAINTS ? MOST_FRAMES : 2]; \
+    vec3 frame_margins[FAINTS ? MOST_FRAMES : 2]; \
     vec3 frame_lows[PAIRED ? MOST_FRAMES : 2];
 #define MET_MARKS uint met_marks[MOST_FRAMES];
 #define SPACES mat3 spaces[STRETCHED ? MOST_FRAMES : 2];

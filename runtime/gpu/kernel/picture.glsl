@@ -74,9 +74,19 @@ Stream stream_of_pixel(uvec2 pixel, uvec2 sequence, uint i) {
     return stream_of(uvec2(pixel.x, pixel.y ^ (sequence.x << 16)), i);
 }
 
+/// Whether the device ends loops before their time, as drivers by software do after some ten thousand rounds in all:
+/// then it ends this one, too. Its rounds are no constant, or drivers would need no loop; and Mesa takes for granted
+/// that the condition of a loop is false behind it, so that this asks for another.
+bool ends_loops_early() {
+    uint rounds = 0u;
+    while (rounds < scene.looks.y)
+        ++rounds;
+    return rounds != scene.looks.y;
+}
+
 /// Adds samples `first` to `first + count` to a pixel. `film`: the weighted sum of its light and the weights;
 /// then the mean and the sum of squares of the luminance, and the steps and the number of rays in
-/// thousands. Steps without end: some part had no room. It is read again for each sample: what a ray keeps takes
+/// thousands. Steps from STEPS_LOST on: some part had no room; from STEPS_ENDED on: the device ended loops. It is read again for each sample: what a ray keeps takes
 /// registers.
 void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint count, uint lattice) {
     rays = 0u;
@@ -103,12 +113,13 @@ void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, ui
         film[SUMS_A_PIXEL * at] = sum;
         film[SUMS_A_PIXEL * at + 1u] = noise;
     }
-    film[SUMS_A_PIXEL * at + 1u] += vec4(0.0f, 0.0f, lost > 0u ? FAR : 1e-3f * float(steps), 1e-3f * float(rays));
+    const float counted = ends_loops_early() ? STEPS_ENDED : lost > 0u ? STEPS_LOST : 1e-3f * float(steps);
+    film[SUMS_A_PIXEL * at + 1u] += vec4(0.0f, 0.0f, counted, 1e-3f * float(rays));
 }
 
 /// Likewise, for AovSum of runtime/trace. `film`: the weights that meet a surface, their depths, and how far from the
-/// middle the nearest sample is; normals; albedos; that sample's node, as two halves, its levels, and parts that had no
-/// room.
+/// middle the nearest sample is; normals; albedos; that sample's node, as two halves, its levels, and steps as above, or
+/// none.
 void add_aovs(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint count, uint lattice) {
     for (uint i = first; i < first + count; ++i) {
         Stream stream = stream_of_pixel(pixel, sequence, i);
@@ -135,5 +146,6 @@ void add_aovs(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint 
         film[AOVS_A_PIXEL * at + 1u] += vec4((dot(hit.normal, d) > 0.0f ? -place.weight : place.weight) * hit.normal, 0.0f);
         film[AOVS_A_PIXEL * at + 2u] += vec4(place.weight * hit.rgb, 0.0f);
     }
-    film[AOVS_A_PIXEL * at + 3u] += vec4(0.0f, 0.0f, 0.0f, float(lost));
+    const float counted = ends_loops_early() ? STEPS_ENDED : lost > 0u ? STEPS_LOST : 0.0f;
+    film[AOVS_A_PIXEL * at + 3u] += vec4(0.0f, 0.0f, 0.0f, counted);
 }

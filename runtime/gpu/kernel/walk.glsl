@@ -6,6 +6,18 @@
 /// Rays of the thread, boxes and parts that they went to, and parts that they had no room for.
 STEPS
 
+/// Distance up to which a hit is near enough, if none can be nearer by more than this share of the half width
+/// (NearEnough::distance()).
+float near_enough(vec3 origin, vec3 direction, float share) {
+    const float slope = dot(xyz_of(scene.plane), direction);
+    if (slope == 0.0f) return -FAR;
+    const float middle = (scene.plane.w - dot(xyz_of(scene.plane), origin)) / slope;
+    const vec3 here = origin + middle * direction;
+    const float most = scene.plane_parts.x, half_width = min(most, least_half_width(here, -2.0f * most));
+    const float height = max(scene.plane_parts.y * half_width, scene.plane_parts.z / detail_per_unit(here, 2.0f * most));
+    return middle - height / abs(slope) + share * half_width;
+}
+
 /// The first surface along the ray, or with `any` whether there is one: then nothing else of the hit counts.
 bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(Hit) hit) {
     uint later_entry[MOST_LATER];
@@ -17,6 +29,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
     hit.t = most;
     hit.pattern_size = 0.0f;
     hit.faded = 0.0f;
+    const float enough = FAINTS ? near_enough(origin, direction, NEAR_ENOUGH_SHARE) : -FAR,
+                plenty = FAINTS ? near_enough(origin, direction, PLENTY_SHARE) : -FAR;
     Meeting meeting;
     Frame frame;
     frame.origin = origin;
@@ -25,7 +39,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
     frame.direction = direction;
     frame.unit = 1.0f;
     frame.scale = 1.0f;
-    frame.margin = scene.widths.z;
+    frame.margin = vec3(scene.widths.z);
     frame.steps = scene.counts.z;
     frame.part = NONE;
     frame.waiting = 0;
@@ -43,7 +57,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
         while ((entry & ~ENTRY_NUMBER) == 0u) {
             const uint first = entry * BOX_SIZE;
             const float near = (least - frame.base) * per_unit, far = (hit.t - frame.base) * per_unit;
-            const float margin = FAINTS ? frame.margin : 0.0f;
+            const vec3 margin = FAINTS ? frame.margin : vec3(0.0f);
             entry = NONE;
             entry_t = FAR;
             ++visits;
@@ -128,7 +142,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             inner.steps = frame.steps == NONE ? NONE : frame.steps - levels;
             inner.cut = false;
             inner.faint = frame.faint;
-            inner.margin = 0.0f;
+            inner.margin = vec3(0.0f);
             const float inner_per_unit = 1.0f / inner.unit;
             // The surface to meet, if there is one: a primitive, or the ball that stands for what is cut.
             bool meets = is_shape, is_proxy = false, widened = false;
@@ -173,7 +187,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     inner.faint = detail <= 1.0f;
                 if (FAINTS && (marks.y & NODE_WIDENS) != 0u)
                     inner.margin = scene.widths.y * least_half_width(place, -2.0f * radius) / inner.scale *
-                                   (STRETCHED ? most_extent(spaces[at + 1]) : 1.0f);
+                                   (STRETCHED ? extents_of_ball(spaces[at + 1]) : vec3(1.0f));
                 if (tree != NONE) {
                     entry = tree;
                     entry_t = inner.base;
@@ -240,6 +254,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             // A pattern's is the scale of frames that the walk may leave.
             if (PATTERNS) hit.pattern_size = meeting.is_proxy ? 0.0f : pattern_size_of(meeting);
         }
+        if (FAINTS && found && (hit.t <= plenty || (hit.t <= enough && float(visits) > scene.plane_parts.w))) break;
         if (visits > scene.visits.x) {
             // What is left is drawn as coarsely as may be, then not at all.
             if (hurries || found) break;
@@ -270,6 +285,6 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
         }
     }
     steps += visits;
-    if (found && !any) take_hit(meeting, direction, hit);
+    if (found && !any) take_hit(meeting, origin, direction, hit);
     return found;
 }

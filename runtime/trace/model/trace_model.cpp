@@ -444,7 +444,7 @@ TraceModel::TraceModel(std::shared_ptr<const PreparedGraph> ready, const View& s
         clear_texels = clear_texels || (texture && texture->coverage < 1);
     const Control control{cancel, {}};
     ModelBuilder(*this, control).build();
-    near_enough = NearEnough(*this);
+    near_enough = NearEnough(prepared, *basis, most_half_width, projection.error_px());
     find_shells(*this, control);
     add_specks(*this);
     add_unrollings(*this, cancel);

@@ -22,7 +22,8 @@
     inline thread_local vec4 frame_places[MOST_FRAMES];                                                      \
     inline thread_local uvec4 frame_marks[MOST_FRAMES];                                                      \
     inline thread_local vec3 frame_directions[MOST_FRAMES];                                                  \
-    inline thread_local vec2 frame_sizes[MOST_FRAMES];                                                       \
+    inline thread_local float frame_scales[MOST_FRAMES];                                                     \
+    inline thread_local vec3 frame_margins[MOST_FRAMES];                                                     \
     inline thread_local vec3 frame_lows[MOST_FRAMES];
 #define MET_MARKS inline thread_local uint met_marks[MOST_FRAMES];
 #define SPACES inline thread_local mat3 spaces[MOST_FRAMES];

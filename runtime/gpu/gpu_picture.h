@@ -62,7 +62,7 @@ class GpuPicture {
     double seconds() const; ///< that the devices have worked, side by side
 
   private:
-    /// What one of the devices draws: of the rows of tiles each one whose number leaves `first`, by division.
+    /// The part that one device draws: every row of tiles whose number leaves `first`, divided by the devices.
     struct Share {
         Gpu* gpu;
         int first;

@@ -44,7 +44,7 @@ struct RenderOptions : PictureWishes {
     std::optional<Tile> tile;
     std::optional<PictureFit> fit; ///< of the native engine: known already; requires `progressive` to be off
     int threads = 0;               ///< 0: as many as the engine likes
-    /// Of the GPU engine: numbers of gpu_devices(); empty: all cards of the first one's kind.
+    /// Numbers of gpu_devices(), for the GPU engine; empty: all cards of the first one's kind.
     std::vector<std::size_t> devices;
     bool aovs = false; ///< of an EXR: further channels (aov_channels.h)
     /// Whether the picture needs what its samples meet, and not only their light.

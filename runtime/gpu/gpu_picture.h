@@ -62,7 +62,8 @@ class GpuPicture {
     double seconds() const; ///< that the devices have worked, side by side
 
   private:
-    /// The part that one device draws: every row of tiles whose number leaves `first`, divided by the devices.
+    /// The part that one device draws: every row of tiles whose number leaves `first`, divided by the
+    /// devices.
     struct Share {
         Gpu* gpu;
         int first;

@@ -111,7 +111,7 @@ TEST_F(Materials, AHundredVeilsShowWhatLiesBehind) {
           "filter: 0 }\nobject stack {\n" +
               veils +
               "}\nbackground: 1, 1, 1\nlight { sun: 0, 0, 1  color: 0, 0, 0 }\n"
-              "camera { location: 0, 0, 10  direction: 0, 0, -1  orthographic  width: 1 }\n");
+              "camera { location: 0, 0, 10  look_at: 0, 0, 0  orthographic  width: 1 }\n");
     for (const std::string engine : {"native", "povray"}) {
         const RunResult drawn = graftal("render v.inst --engine " + engine + " --size 8x8 -q -o v.png");
         ASSERT_EQ(drawn.status, 0) << drawn.err;

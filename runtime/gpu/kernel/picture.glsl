@@ -86,8 +86,8 @@ bool ends_loops_early() {
 
 /// Adds samples `first` to `first + count` to a pixel. `film`: the weighted sum of its light and the weights;
 /// then the mean and the sum of squares of the luminance, and the steps and the number of rays in
-/// thousands. Steps from STEPS_LOST on: some part had no room; from STEPS_ENDED on: the device ended loops. It is read again for each sample: what a ray keeps takes
-/// registers.
+/// thousands. Steps from STEPS_LOST on: some part had no room; from STEPS_ENDED on: the device ended loops. The film is
+/// read again for each sample: what a ray keeps takes registers.
 void add_samples(uvec2 pixel, uint at, vec2 size, uvec2 sequence, uint first, uint count, uint lattice) {
     rays = 0u;
     steps = 0u;

@@ -1,7 +1,7 @@
 // Points of surfaces: what a path meets, and the light of lamps and of the sky that it shows there (Shader of
 // runtime/trace, with the same choices of the same random numbers; comments there say why).
 
-#define MOST_WAITING 4
+#define MOST_WAITING 16
 #define LEAST_COSINE 1e-10f
 #define LEAST_LIGHT 1e-10f
 #define SHADOW_PIXELS 1e-3f

@@ -164,7 +164,20 @@ void add_sky(const View& view, FlatModel& flat) {
     flat.texels.insert(flat.texels.end(), columns.begin(), columns.end());
 }
 
-void add_camera(const FlatRequest& request, Scene& scene) {
+/// Where the whole model is a set in a plane, rays need not look for the nearest of thousands of parts.
+void add_plane(const FlatRequest& request, const TraceBasis& basis, double most_half_width, double error_px,
+               Scene& scene) {
+    static_assert(NEAR_ENOUGH_SHARE == near_enough_share && PLENTY_SHARE == static_cast<float>(plenty_share));
+    const NearEnough plane(request.prepared, basis, most_half_width, error_px);
+    if (plane.axis < 0) return;
+    Vec3 normal(0.0);
+    normal[plane.axis] = 1;
+    scene.plane = flat_four(normal, plane.middle - request.view.camera.location[plane.axis]);
+    scene.plane_parts =
+        flat_four({most_half_width, plane.widened_reach, plane.terminal_reach}, most_patience);
+}
+
+void add_camera(const FlatRequest& request, const TraceBasis& basis, Scene& scene) {
     const View& view = request.view;
     const Camera& camera = view.camera;
     const double half_width =
@@ -188,9 +201,11 @@ void add_camera(const FlatRequest& request, Scene& scene) {
         if (node.primitive) widest = std::max(widest, widened_reach(*node.primitive));
     const DetailNode& root = cut.nodes[cut.root];
     const Projection projection(view, detail, detail.error_px, nearest_to_eye(cut));
+    const double most_half_width = root.widens ? projection.most_half_width(root.ball) : 0;
     scene.widths =
         flat_four({std::min(least_half_width_px, detail.error_px) / std::max(detail.error_px, 1e-30), widest,
-                   root.widens ? widest * projection.most_half_width(root.ball) : 0});
+                   widest * most_half_width});
+    add_plane(request, basis, most_half_width, projection.error_px(), scene);
     const auto edge = [&](double tangent) {
         return std::pair(tangent / std::hypot(1, tangent), 1 / std::hypot(1, tangent));
     };
@@ -211,7 +226,7 @@ void add_camera(const FlatRequest& request, Scene& scene) {
 
 } // namespace
 
-void add_light(const FlatRequest& request, FlatModel& flat) {
+void add_light(const FlatRequest& request, const TraceBasis& basis, FlatModel& flat) {
     const View& view = request.view;
     Scene& scene = flat.scene;
     add_sky(view, flat); // its picture comes first among the texels
@@ -222,7 +237,7 @@ void add_light(const FlatRequest& request, FlatModel& flat) {
             materials[i],
             i < request.textures.of_material.size() ? request.textures.of_material[i].get() : nullptr, flat);
     add_lamps(view, scene);
-    add_camera(request, scene);
+    add_camera(request, basis, scene);
     bool opaque = std::ranges::none_of(request.prepared.cut.materials, &Material::is_transparent);
     if (view.ground) {
         const bool clear = view.ground->material.is_transparent();

@@ -250,22 +250,6 @@ bool needs_pairs(const View& view, const Box& drawn) {
     return !(size < most_pixels * pixel);
 }
 
-/// Where the whole model is a set in a plane, rays need not look for the nearest of thousands of parts.
-void add_plane(const FlatRequest& request, const TraceBasis& basis, kernel_layout::Scene& scene) {
-    static_assert(NEAR_ENOUGH_SHARE == near_enough_share && PLENTY_SHARE == static_cast<float>(plenty_share));
-    const DetailGraph& cut = request.prepared.cut;
-    const DetailNode& root = cut.nodes[cut.root];
-    const Projection projection(request.view, request.detail, request.detail.error_px, nearest_to_eye(cut));
-    const double most_half_width = root.widens ? projection.most_half_width(root.ball) : 0;
-    const NearEnough plane(request.prepared, basis, most_half_width, projection.error_px());
-    if (plane.axis < 0) return;
-    Vec3 normal(0.0);
-    normal[plane.axis] = 1;
-    scene.plane = flat_four(normal, plane.middle - request.view.camera.location[plane.axis]);
-    scene.plane_parts =
-        flat_four({most_half_width, plane.widened_reach, plane.terminal_reach}, most_patience);
-}
-
 } // namespace
 
 std::uint64_t FlatModel::bytes() const {
@@ -314,8 +298,7 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
         return std::nullopt;
     }
     flat.source = basis.layers.source;
-    add_light(request, flat);
-    add_plane(request, basis, flat.scene);
+    add_light(request, basis, flat);
     return flat;
 }
 

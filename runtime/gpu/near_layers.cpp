@@ -22,6 +22,7 @@ constexpr double rounding = 1e-14;
 constexpr std::size_t most_neighbours = 100;
 
 bool is_layer(const Box& part, int axis) {
+    if (part.empty()) return false; // a plane's
     const Vec3 size = part.size();
     return size[axis] <= thickest * std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
 }

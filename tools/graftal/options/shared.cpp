@@ -398,10 +398,11 @@ void add_engine(CLI::App& app, Options& options, const std::string& help,
 }
 
 void add_device(CLI::App& app, Options& options) {
-    const std::string number = "Graphics card of '--engine gpu', by its number in 'graftal version --json'";
     add_value(
-        app, "--device", "N", number + " (default: the first card)", "a whole number, 0 or more",
-        [](const std::string& text) { return parse_whole(text, 0, UINT32_MAX); },
+        app, "--device", "N",
+        "Graphics card of '--engine gpu', by its number in 'graftal version --json' (default: the first "
+        "card)",
+        "a whole number, 0 or more", [](const std::string& text) { return parse_whole(text, 0, UINT32_MAX); },
         [&options](std::uint64_t device) { options.render.devices = {device}; });
 }
 

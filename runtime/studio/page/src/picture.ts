@@ -11,6 +11,8 @@ const storage_key = 'graftal picture', kept_quality = 0.85;
 interface Ready {
   tile: Tile;
   samples: Uint8Array | null;
+  /** The samples a pixel once this tile is painted, where it ends a pass. */
+  told?: number;
 }
 
 /** A picture of so many samples a pixel is sharp. */
@@ -28,7 +30,7 @@ export class Picture {
   /** Pixels a sample of the coarse pass that comes in; 0: none. */
   private coarse_pass = 0;
   private painting = false;
-  /** The samples a pixel of the picture that is shown, as far as the session told. */
+  /** The samples a pixel of what is painted, as far as the session told. */
   private samples = 0;
   /** The last sharp picture, where the one that is shown is not. */
   private sharp: HTMLCanvasElement | null = null;
@@ -91,15 +93,18 @@ export class Picture {
     );
   }
 
-  /** Pictures of engines that tell no samples are sharp. */
+  /** A pass ends with the tiles that came before: they may still wait to be painted. Pictures of engines that tell no samples are sharp. */
   pass(number: number, samples: number | null): void {
-    if (number === this.shown) this.samples = samples ?? sharp_samples;
+    const last = this.queue.at(-1), told = samples ?? sharp_samples;
+    if (last?.tile.number === number) last.told = told;
+    else if (!last && number === this.shown) this.samples = told;
   }
 
   /** The view is another: no picture of before is of it. */
   forget_sharp(): void {
     this.sharp = null;
     this.samples = 0;
+    for (const ready of this.queue) delete ready.told;
   }
 
   /** The state of this number has no picture: the last good one stays, or comes back where only a rough one followed it. */
@@ -150,7 +155,8 @@ export class Picture {
     };
     let done = 0;
     while (done < count && performance.now() - start_ms < frame_share_ms) {
-      const { tile, samples } = this.queue[done++]!;
+      const { tile, samples, told } = this.queue[done++]!;
+      if (told !== undefined) this.samples = told;
       const data = tile_data(tile, samples!);
       if (!data) continue;
       if (coarse.length && coarse[0]!.coarse !== tile.coarse) enlarge();

@@ -7,6 +7,7 @@
 
 #include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/graph/piece_kind.h"
+#include "compiler/detail/least_width.h"
 #include "compiler/primitives/texture_space.h"
 
 namespace graftal {
@@ -35,6 +36,7 @@ class Flattening {
             add_node(id, error_px);
             if (!fits_) return std::nullopt;
         }
+        mark_wide();
         return std::move(flat_);
     }
 
@@ -42,15 +44,13 @@ class Flattening {
     void add_node(NodeId id, double error_px) {
         const DetailNode& node = cut_.nodes[id];
         const Affine frame_from_graph = inverse(graph_from_frame_[id]);
-        fits_ = fits_ && !node.sealed &&
-                flat_.edges.size() + edge_count(node, false) + node.stop_edges.size() <= most_edges_;
+        fits_ = fits_ && flat_.edges.size() + edge_count(node, false) + node.stop_edges.size() <= most_edges_;
         if (!fits_) return;
         FlatNode flat;
         if (node.primitive) flat.primitive = number_of(*node.primitive);
         flat.unending = node.unending && !node.unbounded;
         flat.terminal = node.terminal;
         flat.faint = node.shadowless;
-        flat.widens = node.widens;
         flat.diameter = static_cast<float>(2 * frame_from_graph.linear[0][0] * node.ball.radius);
         const Vec3 centre = frame_from_graph(node.ball.centre);
         for (int axis = 0; axis < 3; ++axis)
@@ -78,14 +78,38 @@ class Flattening {
         flat_.nodes.push_back(flat);
     }
 
+    /// Parts that are drawn wider than they are make what holds them wider, too.
+    void mark_wide() {
+        std::vector<std::vector<std::uint32_t>> users(flat_.nodes.size());
+        std::vector<std::uint32_t> wide;
+        for (std::uint32_t id = 0; id < flat_.nodes.size(); ++id) {
+            FlatNode& node = flat_.nodes[id];
+            node.widens = node.faint;
+            for (std::uint32_t i = 0; i < node.edge_count + node.stop_edge_count; ++i) {
+                const FlatEdge& edge = flat_.edges[node.first_edge + i];
+                users[edge.child].push_back(id);
+                node.widens |= edge.crushes;
+            }
+            if (node.widens) wide.push_back(id);
+        }
+        while (!wide.empty()) {
+            const std::uint32_t id = wide.back();
+            wide.pop_back();
+            for (const std::uint32_t user : users[id])
+                if (std::exchange(flat_.nodes[user].widens, 1) == 0) wide.push_back(user);
+        }
+    }
+
     void add_edge(const DetailEdge& edge, const Affine& frame_from_graph, const Box& box) {
         const Affine& graph_from_child = graph_from_frame_[edge.child];
         const Affine parent_from_child = frame_from_graph * edge.node_from_child * graph_from_child;
-        fits_ = fits_ && !is_singular(parent_from_child);
+        const bool crushes = is_singular(parent_from_child, flattest_placement);
+        fits_ = fits_ && !(crushes && cut_.nodes[edge.child].unbounded);
         if (!fits_) return;
-        const Mat3 linear = inverse(parent_from_child).linear;
         FlatEdge flat;
         flat.child = edge.child;
+        flat.crushes = crushes;
+        const Mat3 linear = crushes ? parent_from_child.linear : inverse(parent_from_child).linear;
         flat.levels = edge.levels;
         flat.material = edge.material.value_or(flat_none);
         flat.stretch =
@@ -93,7 +117,7 @@ class Flattening {
         flat.turns = static_cast<float>(length_in_turns(edge.node_from_child.linear));
         flat.tint = Paint(edge.tint);
         for (std::size_t i = 0; i < 9; ++i)
-            flat.child_from_parent[i] = FloatPair(linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
+            flat.linear[i] = FloatPair(linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
         for (std::size_t i = 0; i < 3; ++i)
             flat.origin[i] = FloatPair(parent_from_child.translation[static_cast<int>(i)]);
         flat.box = floats_of(box);
@@ -120,10 +144,10 @@ class Flattening {
 
 } // namespace
 
-Mat3 child_from_parent(const FlatEdge& edge) {
+Mat3 linear_of(const FlatEdge& edge) {
     Mat3 linear;
     for (std::size_t i = 0; i < 9; ++i)
-        linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)] = edge.child_from_parent[i].value();
+        linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)] = edge.linear[i].value();
     return linear;
 }
 
@@ -152,7 +176,8 @@ Affine frame_from_proxy(const FlatNode& node) {
 
 Affine parent_from_child(const FlatEdge& edge) {
     Affine map;
-    map.linear = inverse(Affine{child_from_parent(edge), Vec3(0.0)}).linear;
+    map.linear = linear_of(edge);
+    if (edge.crushes == 0) map.linear = inverse(Affine{map.linear, Vec3(0.0)}).linear;
     for (int axis = 0; axis < 3; ++axis)
         map.translation[axis] = edge.origin[static_cast<std::size_t>(axis)].value();
     return map;

@@ -33,18 +33,20 @@ struct FlatEdge {
     std::uint32_t child = 0;
     std::uint32_t levels = 0; ///< those that a walk has left get fewer by it
     std::uint32_t material = flat_none;
-    float stretch = 1; ///< norm of the map's linear part, between the frames
-    float turns = 1;   ///< of a primitive: length_in_turns() of its map
+    float stretch = 1;         ///< norm of the map's linear part, between the frames
+    float turns = 1;           ///< of a primitive: length_in_turns() of its map
+    std::uint32_t crushes = 0; ///< 1: the map is singular, or nearly (flattest_placement)
     Paint tint;
-    std::array<FloatPair, 9> child_from_parent; ///< linear part by columns, of points from the child's origin
-    std::array<FloatPair, 3> origin;            ///< of the child, in the parent's frame
+    /// Linear part by columns: of child_from_parent, of points from the child's origin; of what is
+    /// crushed, of parent_from_child.
+    std::array<FloatPair, 9> linear;
+    std::array<FloatPair, 3> origin; ///< of the child, in the parent's frame
     std::array<float, 6>
         box; ///< holds all that the child draws, in the parent's frame; flat_endless or more if it has no end
 };
 
-/// Linear part of the map between the frames of an edge's two nodes.
-Mat3 child_from_parent(const FlatEdge& edge);
-/// Requires an edge of a FlatGraph, whose maps can be inverted.
+/// FlatEdge::linear.
+Mat3 linear_of(const FlatEdge& edge);
 Affine parent_from_child(const FlatEdge& edge);
 /// A box as edges have it, rounded outwards; and that of an edge.
 std::array<float, 6> floats_of(const Box& box);
@@ -57,7 +59,7 @@ struct FlatNode {
     std::uint32_t primitive = flat_none; ///< of FlatGraph::primitives; then it has no edges
     std::uint32_t unending = 0;    ///< 1: cut where no level is left; planes and what holds them never are
     std::uint32_t faint = 0;       ///< DetailNode::shadowless
-    std::uint32_t widens = 0;      ///< DetailNode::widens
+    std::uint32_t widens = 0;      ///< 1: holds what is faint or crushed, and drawn wider than it is
     std::uint32_t terminal = 0;    ///< 1: below the stop edges, what names no material inherits `mean`
     std::array<float, 3> centre{}; ///< of the ball that decides how large it is, in its frame
     float diameter = 0;            ///< likewise
@@ -78,8 +80,8 @@ struct FlatGraph {
     Affine world_from_root; ///< from the root's frame
 };
 
-/// Nothing where the graph is no input for such an engine: it has more than `most_edges` edges, or some map
-/// leaves no thickness. `error_px`: Projection::error_px(). O(edges), those of cells
+/// Nothing where the graph is no input for such an engine: it has more than `most_edges` edges, or a singular
+/// map places what has no end. `error_px`: Projection::error_px(). O(edges), those of cells
 /// spelt out.
 std::optional<FlatGraph> flat_graph(const LayeredGraph& layers, const DrawnBounds& bounds, double error_px,
                                     std::size_t most_edges);

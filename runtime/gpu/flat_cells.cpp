@@ -125,7 +125,7 @@ class Cells {
     /// A union that is never cut where the parts passed over are not.
     bool is_group(const FlatEdge& edge, const FlatCell& cell) const {
         const FlatNode& child = graph_.nodes[edge.child];
-        return is_union(child) && child.cut_detail == 0 &&
+        return is_union(child) && child.cut_detail == 0 && !edge.crushes &&
                (!child.unending || edge.levels < cell.least_steps);
     }
 
@@ -210,7 +210,7 @@ class Cells {
         const FlatEdge first = cells_.edges[before].edge, second = cells_.edges[last].edge;
         const Affine parent_from_middle = parent_from_child(first);
         const Affine whole = parent_from_middle * parent_from_child(second);
-        const Mat3 linear = child_from_parent(second) * child_from_parent(first);
+        const Mat3 linear = second.crushes ? whole.linear : linear_of(second) * linear_of(first);
         FlatEdge edge = second;
         edge.levels = first.levels + second.levels;
         if (second.material == flat_none) edge.material = first.material;
@@ -219,7 +219,7 @@ class Cells {
                            : static_cast<float>(largest_stretch(whole.linear));
         edge.tint = second.tint.under(first.tint);
         for (std::size_t i = 0; i < 9; ++i)
-            edge.child_from_parent[i] = FloatPair(linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
+            edge.linear[i] = FloatPair(linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
         for (std::size_t i = 0; i < 3; ++i)
             edge.origin[i] = FloatPair(whole.translation[static_cast<int>(i)]);
         if (!is_endless(second))
@@ -248,8 +248,8 @@ class Cells {
 } // namespace
 
 bool is_similarity(const FlatEdge& edge) {
-    const Mat3 linear = double(edge.stretch) * child_from_parent(edge),
-               squares = glm::transpose(linear) * linear;
+    if (edge.crushes) return false;
+    const Mat3 linear = double(edge.stretch) * linear_of(edge), squares = glm::transpose(linear) * linear;
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k <= i; ++k)
             if (!(std::abs(squares[i][k] - (i == k ? 1 : 0)) < 1e-6)) return false;

@@ -167,14 +167,14 @@ void add_sky(const View& view, FlatModel& flat) {
 /// Where the whole model is a set in a plane, rays need not look for the nearest of thousands of parts.
 void add_plane(const FlatRequest& request, const TraceBasis& basis, double most_half_width, double error_px,
                Scene& scene) {
-    static_assert(NEAR_ENOUGH_SHARE == near_enough_share && PLENTY_SHARE == static_cast<float>(plenty_share));
+    static_assert(NEAR_ENOUGH_SHARE == near_enough_share &&
+                  PLENTY_SHARE == static_cast<float>(plenty_share) && PATIENCE == most_patience);
     const NearEnough plane(request.prepared, basis, most_half_width, error_px);
     if (plane.axis < 0) return;
     Vec3 normal(0.0);
     normal[plane.axis] = 1;
     scene.plane = flat_four(normal, plane.middle - request.view.camera.location[plane.axis]);
-    scene.plane_parts =
-        flat_four({most_half_width, plane.widened_reach, plane.terminal_reach}, most_patience);
+    scene.plane_parts = flat_four({most_half_width, plane.widened_reach, plane.terminal_reach});
 }
 
 void add_camera(const FlatRequest& request, const TraceBasis& basis, Scene& scene) {

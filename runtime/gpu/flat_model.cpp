@@ -40,10 +40,19 @@ std::uint32_t material_number(std::uint32_t material) {
     return material == flat_none ? NONE : material + 1;
 }
 
+/// Whether what an edge places is flat, or is so once a cycle comes to it again.
+bool may_crush(const FlatGraph& graph, const FlatEdge& edge) {
+    const FlatNode& child = graph.nodes[edge.child];
+    if (edge.crushes || child.primitive != flat_none) return edge.crushes;
+    constexpr double flat = 1e-4, flat_twice = 1e-3;
+    return is_singular(Affine{linear_of(edge), {}}, child.unending ? flat_twice : flat);
+}
+
 /// Whether rays keep their direction in the child's frame.
 bool keeps_directions(const FlatEdge& edge) {
+    if (edge.crushes) return false;
     for (std::size_t i = 0; i < 9; ++i)
-        if (!(std::abs(edge.child_from_parent[i].high * edge.stretch - (i % 4 == 0 ? 1.0f : 0.0f)) < 1e-6f))
+        if (!(std::abs(edge.linear[i].high * edge.stretch - (i % 4 == 0 ? 1.0f : 0.0f)) < 1e-6f))
             return false;
     return true;
 }
@@ -86,8 +95,7 @@ class Flattener {
         edge.stretch = static_cast<float>(place.linear[0][0]);
         const Mat3 inverse_linear = inverse(place).linear;
         for (std::size_t i = 0; i < 9; ++i)
-            edge.child_from_parent[i] =
-                FloatPair(inverse_linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
+            edge.linear[i] = FloatPair(inverse_linear[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
         for (std::size_t i = 0; i < 3; ++i)
             edge.origin[i] = FloatPair(place.translation[static_cast<int>(i)] - eye[static_cast<int>(i)]);
         add_edge({edge});
@@ -95,18 +103,20 @@ class Flattener {
 
     void add_edge(const PassedEdge& passed) {
         const FlatEdge& edge = passed.edge;
-        const auto& m = edge.child_from_parent;
+        const auto& m = edge.linear;
         for (std::size_t row = 0; row < 3; ++row) {
             flat_.parts.emplace_back(m[row].high, m[3 + row].high, m[6 + row].high, edge.origin[row].high);
             if (flat_.features.paired)
                 flat_.lows.emplace_back(m[row].low, m[3 + row].low, m[6 + row].low, edge.origin[row].low);
         }
         flat_.parts.emplace_back(edge.stretch, flat_bits(edge.child),
-                                 flat_bits(material_number(edge.material)), flat_bits(edge.levels));
+                                 flat_bits(material_number(edge.material)),
+                                 flat_bits(edge.levels | (edge.crushes ? PART_OUTWARDS : 0)));
         flat_.parts.resize(flat_.parts.size() + 2);
         const std::uint32_t primitive = graph_.nodes[edge.child].primitive;
         FlatModel::Features& features = flat_.features;
-        features.stretched = features.stretched || (primitive == flat_none && !is_similarity(edge));
+        features.stretched =
+            features.stretched || features.crushed || (primitive == flat_none && !is_similarity(edge));
         const bool is_mesh = primitive != flat_none && meshes_[primitive] != NONE;
         if (primitive == flat_none || is_mesh) features.even = features.even && keeps_directions(edge);
         if (primitive != flat_none)
@@ -225,7 +235,6 @@ class Flattener {
 std::string lack(const FlatRequest& request) {
     if (request.textures.of_ground) return "a picture on the ground";
     for (const DetailNode& node : request.prepared.cut.nodes) {
-        if (node.sealed) return "a singular map";
         if (node.is_combined()) return "an intersection or a difference";
     }
     if (request.detail.error_px > SelfShadows::lit_as_px)
@@ -280,12 +289,14 @@ std::optional<FlatModel> flat_model(const FlatRequest& request, std::string& why
     const std::optional<FlatGraph> graph =
         flat_graph(basis.layers, basis.bounds, request.detail.error_px, most_edges);
     if (!graph) {
-        why = "a singular map";
+        why = "a plane below a singular map";
         return std::nullopt;
     }
     FlatModel flat;
     flat.features.pictured = std::ranges::any_of(request.textures.of_material,
                                                  [](const auto& texture) { return texture != nullptr; });
+    flat.features.crushed =
+        std::ranges::any_of(graph->edges, [&](const FlatEdge& edge) { return may_crush(*graph, edge); });
     flat.features.paired = needs_pairs(request.view, basis.bounds.node[graph->root]);
     constexpr double far = flat_endless;
     const bool fits = Flattener(*graph, flat)

@@ -65,9 +65,9 @@ Status GpuPicture::for_each_share(const std::function<Status(Share&)>& act) {
 
 Status GpuPicture::prepare(const FlatModel& model, std::uint32_t frames) {
     const FlatModel::Features& has = model.features;
-    const std::array<std::uint32_t, 11> constants = {
+    const std::array<std::uint32_t, 12> constants = {
         frames,       samples_.aovs, has.stretched, has.even,   model.scene.widths.z > 0, has.patterned,
-        has.pictured, has.glassy,    has.kinds,     has.paired, has.translucent};
+        has.pictured, has.glassy,    has.kinds,     has.paired, has.translucent,          has.crushed};
     const std::span<const std::byte> scene = std::as_bytes(std::span(&model.scene, 1));
     return for_each_share([&](const Share& share) {
         Status status =

@@ -67,6 +67,12 @@ uint node_of(uint part) {
     return bits_of(parts(part * PART_SIZE + 3u)).y;
 }
 
+/// Where the frame of a part begins, in the frame that holds it.
+vec3 origin_of(uint part) {
+    const uint first = part * PART_SIZE;
+    return vec3(parts(first).w, parts(first + 1u).w, parts(first + 2u).w);
+}
+
 /// Half of what is drawn at least of a set without area, about a point of the world: Projection's
 /// least_half_width(), or most_half_width() with a negative radius.
 float least_half_width(vec3 from_eye, float radius) {
@@ -142,6 +148,8 @@ mat3 inverse_of(vec3 row0, vec3 row1, vec3 row2) {
 /// The linear part of parent_from_child of a part.
 mat3 inverse_of_part(uint part) {
     const uint first = part * PART_SIZE;
+    if (CRUSHES && (bits_of(parts(first + 3u)).w & PART_OUTWARDS) != 0u)
+        return transpose(mat3(xyz_of(parts(first)), xyz_of(parts(first + 1u)), xyz_of(parts(first + 2u))));
     return inverse_of(xyz_of(parts(first)), xyz_of(parts(first + 1u)), xyz_of(parts(first + 2u)));
 }
 
@@ -152,29 +160,55 @@ mat3 to_world(int at, float scale, vec3 row0, vec3 row1, vec3 row2) {
     return STRETCHED ? spaces[at] * part : part;
 }
 
-/// Half axes of the image of a ball that are shorter than the width become as long: the map by which rays meet
-/// that, in the ball's own space (least_width.h). Jacobi's turns find the axes.
-mat3 squeezing(mat3 world_from_ball, float width) {
-    const mat3 widths = world_from_ball / width;
-    mat3 squares = transpose(widths) * widths, axes = mat3(1.0f);
+/// The inverse of a map once its singular values below `low` are raised to `least`. Jacobi's turns make its columns
+/// orthogonal: those of what is crushed keep their digits, and what has none left is replaced.
+mat3 raised_inverse(mat3 map, float low, float least) {
+    mat3 image = map / least, axes = mat3(1.0f);
     for (int turn = 0; turn < 12; ++turn) {
         const int p = turn % 3, q = (p + 1) % 3;
-        if (!(abs(squares[p][q]) > 1e-7f * sqrt(squares[p][p] * squares[q][q]))) continue;
-        const float ratio = 0.5f * (squares[q][q] - squares[p][p]) / squares[p][q];
+        const vec3 a = image[p], b = image[q], axis = axes[p];
+        const float aa = dot(a, a), bb = dot(b, b), ab = dot(a, b);
+        if (!(abs(ab) > 1e-7f * sqrt(aa * bb))) continue;
+        const float ratio = 0.5f * (bb - aa) / ab;
         const float tangent = (ratio < 0.0f ? -1.0f : 1.0f) / (abs(ratio) + sqrt(ratio * ratio + 1.0f));
-        const float cosine = inversesqrt(tangent * tangent + 1.0f);
-        mat3 turned = mat3(1.0f);
-        turned[p][p] = cosine;
-        turned[q][q] = cosine;
-        turned[p][q] = -tangent * cosine;
-        turned[q][p] = tangent * cosine;
-        squares = transpose(turned) * squares * turned;
-        axes = axes * turned;
+        const float cosine = inversesqrt(tangent * tangent + 1.0f), sine = tangent * cosine;
+        image[p] = cosine * a - sine * b;
+        image[q] = sine * a + cosine * b;
+        axes[p] = cosine * axis - sine * axes[q];
+        axes[q] = sine * axis + cosine * axes[q];
     }
-    mat3 shares = mat3(1.0f);
-    for (int i = 0; i < 3; ++i)
-        shares[i][i] = min(sqrt(max(squares[i][i], 0.0f)), 1.0f);
-    return axes * shares * transpose(axes);
+    if (CRUSHES) {
+        // The longest first.
+        for (int i = 0; i < 3; ++i) {
+            const int p = i % 2, q = p + 1;
+            const vec3 shorter = image[p], axis = axes[p];
+            if (!(dot(shorter, shorter) < dot(image[q], image[q]))) continue;
+            image[p] = image[q];
+            image[q] = shorter;
+            axes[p] = axes[q];
+            axes[q] = axis;
+        }
+    }
+    const vec3 sizes = vec3(length(image[0]), length(image[1]), length(image[2]));
+    const vec3 a = image[0] / sizes.x;
+    vec3 b = image[1] / sizes.y, c = image[2] / sizes.z;
+    if (CRUSHES) {
+        const float lost = CRUSHED * sizes.x;
+        if (!(sizes.y > lost)) b = normalize(cross(a, abs(a.x) < 0.6f ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 1.0f, 0.0f)));
+        // The map is to mirror nothing then.
+        if (!(sizes.z > lost)) c = dot(axes[0], cross(axes[1], axes[2])) < 0.0f ? cross(b, a) : cross(a, b);
+    }
+    const float lowest = low / least;
+    return (outerProduct(axes[0], a) / (sizes.x > lowest ? sizes.x : 1.0f) +
+            outerProduct(axes[1], b) / (sizes.y > lowest ? sizes.y : 1.0f) +
+            outerProduct(axes[2], c) / (sizes.z > lowest ? sizes.z : 1.0f)) /
+           least;
+}
+
+/// Half axes of the image of a ball that are shorter than the width become as long: the map by which rays meet
+/// that, in the ball's own space (least_width.h).
+mat3 squeezing(mat3 world_from_ball, float width) {
+    return raised_inverse(world_from_ball, width, width) * world_from_ball;
 }
 
 /// Half of the extents along the axes of a frame that a ball of the world has there, which has 1.
@@ -203,6 +237,54 @@ vec3 place_of(vec3 point, Frame frame, int at, vec3 origin, vec3 direction) {
     const vec3 place = origin + (frame.base + along * frame.unit) * direction;
     if (!STRETCHED) return place;
     return place + frame.scale * (spaces[at] * (point - frame.origin - along * frame.direction));
+}
+
+/// What the world makes of a part that is crushed there.
+struct Crushing {
+    mat3 rows;       // of its map with some thickness
+    float thickness; // in the frame
+    bool is_wide;    // it is drawn wider than it is
+    bool to_line;    // and is a line at most
+};
+
+/// Whether a part is crushed.
+bool crush(uint part, Frame frame, int at, vec3 origin, vec3 direction, OUT(Crushing) crushing) {
+    const mat3 parent_from_part = inverse_of_part(part), map = spaces[at] * parent_from_part;
+    const vec3 ab = cross(map[0], map[1]), bc = cross(map[1], map[2]), ca = cross(map[2], map[0]);
+    const float area = sqrt(max(max(dot(ab, ab), dot(bc, bc)), dot(ca, ca))), volume = abs(dot(map[0], bc));
+    const float size = largest_stretch(map);
+    if (area > CRUSHED * size * size && volume > CRUSHED * area * size) return false;
+    crushing.to_line = !(area > SINGULAR * size * size);
+    crushing.is_wide = crushing.to_line || !(volume > SINGULAR * area * size);
+    const vec4 ball = parts(part * PART_SIZE + 4u), node_facts = parts(part * PART_SIZE + 5u);
+    const vec3 middle =
+        place_of(parent_from_part * xyz_of(ball) + origin_of(part), frame, at, origin, direction);
+    const float half_width = least_half_width(middle, frame.scale * size * ball.w) / frame.scale;
+    const float thickness = half_width > 0.0f ? min(half_width, THICKEST_CRUSHED * size) : THICKNESS_UNCULLED * size;
+    const bool is_mesh = (bits_of(node_facts).y & NODE_KIND) == KIND_MESH;
+    crushing.thickness = FAINTS && !is_mesh ? THICKNESS_INSIDE * thickness
+                                            : thickness / nodes(node_of(part) * NODE_SIZE + NODE_LOOK).w;
+    crushing.rows = transpose(raised_inverse(map, CRUSHED * size, crushing.thickness) * spaces[at]);
+    return true;
+}
+
+/// A normal in the world from one in a frame of this space. Cofactors need no inverse of what is nearly crushed.
+vec3 normal_in_world(mat3 space, vec3 normal) {
+    const vec3 bc = cross(space[1], space[2]), ca = cross(space[2], space[0]), ab = cross(space[0], space[1]);
+    const vec3 n = normal.x * bc + normal.y * ca + normal.z * ab;
+    return normalize(dot(space[0], bc) < 0.0f ? -n : n);
+}
+
+/// Whether the ray passes a point of frame `at` farther away in the world than `reach`. Where parts are drawn wider than
+/// they are, that says more than boxes, above all in what is crushed: a ball of the world is long in all directions there.
+bool passes_beside(vec3 point, float reach, Frame frame, int at, vec3 direction) {
+    const float along = dot(point - frame.origin, frame.direction) / dot(frame.direction, frame.direction);
+    vec3 beside = frame.scale * (point - frame.origin - along * frame.direction);
+    if (STRETCHED) {
+        beside = spaces[at] * beside;
+        beside -= dot(beside, direction) * direction;
+    }
+    return dot(beside, beside) > reach * reach;
 }
 
 /// a + b as a pair of floats: Knuth, "The Art of Computer Programming", volume 2, section 4.2.2, theorem B.
@@ -235,22 +317,23 @@ void add_pair(vec3 other, vec3 other_low, INOUT(vec3) high, INOUT(vec3) low) {
     pair_of_sum(sum, all, high, low);
 }
 
-/// The origin of a ray in a part, `along` from that of frame `outer`: errors of rounding would grow with each level.
-void place_by_pairs(uint part, Frame outer, float along, INOUT(Frame) inner) {
+/// The origin of a ray in a part of these rows, `along` from that of frame `outer`: errors of rounding would grow with
+/// each level. `has_lows`: the rows are those of parts[].
+void place_by_pairs(uint part, vec4 row0, vec4 row1, vec4 row2, bool has_lows, Frame outer, float along,
+                    INOUT(Frame) inner) {
     vec3 at = outer.origin;
     vec3 at_low = outer.low;
     vec3 product;
     vec3 left;
     pair_of_product(vec3(along), outer.direction, product, left);
     add_pair(product, left, at, at_low);
-    const uint first = part * PART_SIZE;
-    const vec4 row0 = parts(first), row1 = parts(first + 1u), row2 = parts(first + 2u);
     const vec4 low0 = lows(part * LOW_SIZE), low1 = lows(part * LOW_SIZE + 1u), low2 = lows(part * LOW_SIZE + 2u);
     add_pair(-vec3(row0.w, row1.w, row2.w), -vec3(low0.w, low1.w, low2.w), at, at_low);
     inner.origin = vec3(0.0f);
     inner.low = vec3(0.0f);
     for (int k = 0; k < 3; ++k) {
-        const vec3 column = vec3(row0[k], row1[k], row2[k]), column_low = vec3(low0[k], low1[k], low2[k]);
+        const vec3 column = vec3(row0[k], row1[k], row2[k]),
+                   column_low = has_lows ? vec3(low0[k], low1[k], low2[k]) : vec3(0.0f);
         pair_of_product(column, vec3(at[k]), product, left);
         PRECISE vec3 small = left + (column * at_low[k] + column_low * at[k]);
         add_pair(product, small, inner.origin, inner.low);

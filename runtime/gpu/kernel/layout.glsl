@@ -12,9 +12,20 @@
 #define BOX_SIZE 8u
 
 // parts[]: an instance as rays go through it. The rows of the linear part of child_from_parent, and with each
-// an axis of the child's origin in the parent; then the stretch, the child, the material and the levels; then
-// NODE_BALL and NODE_FACTS of the child again, which a ray so has at once.
+// an axis of the child's origin in the parent; then the stretch, the child, the material, and the levels with
+// PART_OUTWARDS above them; then NODE_BALL and NODE_FACTS of the child again, which a ray so has at once.
 #define PART_SIZE 6u
+#define PART_LEVELS 0x3fffffffu
+#define PART_OUTWARDS (1u << 31) // its rows are those of parent_from_child, as of what is crushed
+
+// Parts as flat as CRUSHED get some thickness, so that rays keep their digits there; those as flat as SINGULAR are drawn
+// as wide as least_width.h says: at most so much over their size, and without a width of the world so much. What lies
+// inside is as much thinner.
+#define CRUSHED 1e-5f
+#define SINGULAR 1e-6f
+#define THICKEST_CRUSHED 0.125f
+#define THICKNESS_UNCULLED 1e-3f
+#define THICKNESS_INSIDE 0.0625f
 
 // lows[]: by part what single precision has lost of the first three entries; empty unless PAIRED.
 #define LOW_SIZE 3u
@@ -42,7 +53,7 @@
 #define NODE_TERMINAL (1u << 9) // where it is cut, what names no material shows its mean colour
 #define NODE_PRIMITIVE (1u << 10)
 #define NODE_FAINT (1u << 11)  // a set without area
-#define NODE_WIDENS (1u << 12) // holds such a set, which is drawn wider than it is
+#define NODE_WIDENS (1u << 12) // holds such a set, or what is crushed, which are drawn wider than they are
 #define NODE_SOLID (1u << 13)  // of primitives: has an inside
 
 // Kinds of primitives, in the order of GRAFTAL_PRIMITIVE_KINDS; those that the kernel meets as meshes are one.
@@ -68,6 +79,8 @@
 // width.
 #define NEAR_ENOUGH_SHARE 0.25f
 #define PLENTY_SHARE 1e-4f
+// A ray's visits before it takes what is near enough.
+#define PATIENCE 256u
 
 struct Lamp {
     vec4 at;  // of a sun: the unit vector towards it; w: 1 for a sun
@@ -82,7 +95,7 @@ struct Scene {
     vec4 lens;                 // radius, depth, the length of a pixel
     vec4 widths;               // least half width over the error, how far it reaches, the world's margin
     vec4 plane;       // of a set that lies in one (NearEnough): its normal (0: none), its height from the eye
-    vec4 plane_parts; // the most half width; the reaches of widened parts and of terminals; patience
+    vec4 plane_parts; // the most half width; the reaches of widened parts and of terminals
     vec4 projection;           // pixels per tangent over the error, nearest distance, error in the world, culls
     vec4 edges;                // sine and cosine of half the angle of view, across and up
     vec4 sky_zenith, sky_horizon, sky_axis; // w: from, slope, 1 if the sky's light is shown

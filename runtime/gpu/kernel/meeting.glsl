@@ -82,6 +82,8 @@ struct Meeting {
     Site site;     // likewise
     float scale;   // of the last frame
     bool widened;  // it is drawn about as wide as a pixel all round
+    bool crushed;  // it is of what is crushed, and the normal in the world, as is what follows
+    vec3 to_far_side;
 };
 
 MET_MARKS
@@ -116,7 +118,7 @@ void look_along(Meeting meeting, INOUT(Hit) hit) {
             const vec4 mean = nodes(above * NODE_SIZE + NODE_MEAN);
             inherited = xyz_of(mean) + mean.w * inherited;
         }
-        hit.levels += facts.w;
+        hit.levels += facts.w & PART_LEVELS;
         const vec4 own = looks(step * LOOK_SIZE);
         tint = vec4(xyz_of(tint) + tint.w * xyz_of(own), tint.w * own.w);
         if (facts.z != NONE) {
@@ -143,16 +145,11 @@ float pattern_size_of(Meeting meeting) {
     const uint first = meeting.part * PART_SIZE;
     const vec4 extent = nodes(bits_of(parts(first + 3u)).y * NODE_SIZE + NODE_STANDIN);
     if (extent.w == 0.0f) return 1.0f;
-    const mat3 map = to_world(meeting.last, meeting.scale, xyz_of(parts(first)), xyz_of(parts(first + 1u)), xyz_of(parts(first + 2u)));
+    mat3 map = meeting.scale * inverse_of_part(meeting.part);
+    if (STRETCHED) map = spaces[meeting.last] * map;
     const float a = extent.x * length(map[0]), b = extent.y * length(map[1]), c = extent.z * length(map[2]);
     const float middle = max(min(a, b), min(max(a, b), c));
     return middle > 0.0f && middle < FAR ? exp2(0.5f * floor(2.0f * log2(middle) + 0.5f)) : 1.0f;
-}
-
-/// Where the frame of a part begins, in the frame that holds it.
-vec3 origin_of(uint part) {
-    const uint first = part * PART_SIZE;
-    return vec3(parts(first).w, parts(first + 1u).w, parts(first + 2u).w);
 }
 
 /// A point of a part in the frame that holds it.
@@ -221,20 +218,28 @@ vec3 limit_normal_in_world(Meeting meeting, vec3 normal, vec3 place) {
     return sum;
 }
 
-/// From the face of a sheet that was met to the other; 0 where it is none (Traversal::to_far_side_at_best()).
-vec3 to_far_side(Meeting meeting, vec3 direction) {
-    const uint node = bits_of(parts(meeting.part * PART_SIZE + 3u)).y * NODE_SIZE;
-    const bool is_solid = meeting.is_proxy || (bits_of(nodes(node + NODE_FACTS)).y & NODE_SOLID) != 0u;
-    if (!is_solid || (FAINTS && meeting.widened)) return vec3(0.0f);
-    const vec3 half_extents = meeting.is_proxy ? vec3(1.0f) : xyz_of(nodes(node + NODE_STANDIN));
-    mat3 map = meeting.is_proxy ? inverse_of(xyz_of(nodes(node + NODE_PROXY)), xyz_of(nodes(node + NODE_PROXY + 1u)),
-                                             xyz_of(nodes(node + NODE_PROXY + 2u)))
-                                : inverse_of_part(meeting.part);
+/// From the face of a sheet that was met to the other; 0 where it is none (Traversal::to_far_side_at_best()). `map`: to the
+/// world, of the primitive of that node, or its proxy.
+vec3 to_far_side(mat3 map, uint node, bool is_proxy, bool wide, vec3 direction) {
+    const bool is_solid = is_proxy || (bits_of(nodes(node + NODE_FACTS)).y & NODE_SOLID) != 0u;
+    if (!is_solid) return vec3(0.0f);
+    const vec3 half_extents = is_proxy ? vec3(1.0f) : xyz_of(nodes(node + NODE_STANDIN));
+    vec3 normal;
+    const float thickness = sheet_thickness(map[0], map[1], map[2], 2.0f * half_extents, wide, normal);
+    return thickness < 0.0f ? vec3(0.0f) : (dot(normal, direction) < 0.0f ? -thickness : thickness) * normal;
+}
+
+mat3 map_from_proxy(uint node) {
+    return inverse_of(xyz_of(nodes(node + NODE_PROXY)), xyz_of(nodes(node + NODE_PROXY + 1u)),
+                      xyz_of(nodes(node + NODE_PROXY + 2u)));
+}
+
+/// The linear part of the map to the world of what was met.
+mat3 map_of(Meeting meeting) {
+    mat3 map = meeting.is_proxy ? map_from_proxy(node_of(meeting.part) * NODE_SIZE) : inverse_of_part(meeting.part);
     for (int i = meeting.last; i > 0; --i)
         map = inverse_of_part(met_part(i)) * map;
-    vec3 normal;
-    const float thickness = sheet_thickness(map[0], map[1], map[2], 2.0f * half_extents, false, normal);
-    return thickness < 0.0f ? vec3(0.0f) : (dot(normal, direction) < 0.0f ? -thickness : thickness) * normal;
+    return map;
 }
 
 /// Shows what the ray has met.
@@ -243,7 +248,9 @@ void take_hit(Meeting meeting, vec3 origin, vec3 direction, INOUT(Hit) hit) {
     look_along(meeting, hit);
     vec3 n = meeting.normal;
     const bool widened = FAINTS && meeting.widened;
-    if (meeting.is_proxy && !widened) {
+    if (CRUSHES && meeting.crushed) {
+        // As it is.
+    } else if (meeting.is_proxy && !widened) {
         n = limit_normal(meeting);
     } else {
         n = meeting.is_proxy ? normalize(n) : normal_above(meeting.part, n);
@@ -254,6 +261,10 @@ void take_hit(Meeting meeting, vec3 origin, vec3 direction, INOUT(Hit) hit) {
     const float length2 = dot(n, n);
     hit.normal = length2 > 0.0f ? n * inversesqrt(length2) : vec3(0.0f, 1.0f, 0.0f);
     hit.to_far_side = vec3(0.0f);
-    if (SHEETS && materials(hit.material * MATERIAL_SIZE + 2u).x > 0.0f)
-        hit.to_far_side = to_far_side(meeting, direction);
+    if (!SHEETS || !(materials(hit.material * MATERIAL_SIZE + 2u).x > 0.0f)) return;
+    if (CRUSHES && meeting.crushed)
+        hit.to_far_side = meeting.to_far_side;
+    else if (!widened)
+        hit.to_far_side =
+            to_far_side(map_of(meeting), node_of(meeting.part) * NODE_SIZE, meeting.is_proxy, false, direction);
 }

@@ -44,6 +44,7 @@ layout(constant_id = 7) const bool GLASS = false;     // some material lets ligh
 layout(constant_id = 8) const uint KINDS = 0x1ffu;    // of primitives: a bit each
 layout(constant_id = 9) const bool PAIRED = false; // places of rays have two floats for each number
 layout(constant_id = 10) const bool SHEETS = false; // some material is translucent
+layout(constant_id = 11) const bool CRUSHES = false; // some map is singular
 const bool MESHES = (KINDS & (1u << KIND_MESH)) != 0u;
 
 layout(local_size_x = 64) in;

@@ -31,6 +31,9 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
     hit.faded = 0.0f;
     const float enough = FAINTS ? near_enough(origin, direction, NEAR_ENOUGH_SHARE) : -FAR,
                 plenty = FAINTS ? near_enough(origin, direction, PLENTY_SHARE) : -FAR;
+    float crushed_enough = -FAR; // likewise, in what is crushed and gone through
+    int crushed_later = 0;       // entries that waited when the ray came to it
+    int wide_from = MOST_FRAMES; // frames from here on are drawn wide as crushed
     Meeting meeting;
     Frame frame;
     frame.origin = origin;
@@ -110,38 +113,70 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 meeting.site = site;
                 meeting.scale = kept(at - 1, direction).scale;
                 meeting.widened = false;
+                meeting.crushed = crushed_enough > -FAR;
+                if (CRUSHES && meeting.crushed) {
+                    meeting.normal = normal_in_world(spaces[at], normal);
+                    if (SHEETS)
+                        meeting.to_far_side = to_far_side(frame.scale * spaces[at], node_of(frame.part) * NODE_SIZE, false, true, direction);
+                }
             }
             entry = NONE;
         } else if (entry != NONE) {
             ++visits;
             entry = NONE;
             const uint first = number * PART_SIZE;
-            const vec4 row0 = parts(first), row1 = parts(first + 1u), row2 = parts(first + 2u),
-                       facts = parts(first + 3u), ball = parts(first + 4u), node_facts = parts(first + 5u);
-            const uint child = bits_of(facts).y, levels = bits_of(facts).w, node = child * NODE_SIZE;
+            vec4 row0 = parts(first), row1 = parts(first + 1u), row2 = parts(first + 2u);
+            const vec4 facts = parts(first + 3u), ball = parts(first + 4u), node_facts = parts(first + 5u);
+            const uint child = bits_of(facts).y, levels = bits_of(facts).w & PART_LEVELS, node = child * NODE_SIZE;
+            const bool was_crushed = CRUSHES && crushed_enough > -FAR;
             const float stretch = facts.x;
             const uvec4 marks = bits_of(node_facts);
             const uint kind = marks.y & NODE_KIND;
             const bool is_shape = (marks.y & NODE_PRIMITIVE) != 0u && kind != KIND_MESH;
-            const float to_entry = max((entry_t - frame.base) * per_unit, 0.0f);
-            const vec3 from = frame.origin + to_entry * frame.direction - vec3(row0.w, row1.w, row2.w);
+            float to_entry = max((entry_t - frame.base) * per_unit, 0.0f);
+            vec3 from = frame.origin + to_entry * frame.direction - vec3(row0.w, row1.w, row2.w);
+            vec3 moved = vec3(0.0f); // its middle stays where it is
+            Crushing crushing;
+            const bool crushes = CRUSHES && at > 0 && crush(number, frame, at, origin, direction, crushing);
+            if (crushes) {
+                const mat3 rows = crushing.rows;
+                row0 = vec4(rows[0], row0.w);
+                row1 = vec4(rows[1], row1.w);
+                row2 = vec4(rows[2], row2.w);
+                moved = xyz_of(ball) - inverse_of_part(number) * xyz_of(ball) * rows;
+                // Nearest to the middle of what is crushed, its numbers are small.
+                const vec3 way = frame.direction * rows;
+                to_entry -= dot(from * rows, way) / dot(way, way);
+                from = frame.origin + to_entry * frame.direction - vec3(row0.w, row1.w, row2.w);
+            }
+            const bool is_crushed = was_crushed || crushes;
+            const bool is_wide = CRUSHES && (at >= wide_from || (crushes && crushing.is_wide));
             Frame inner;
             inner.origin = vec3(dot(xyz_of(row0), from), dot(xyz_of(row1), from), dot(xyz_of(row2), from));
             inner.low = vec3(0.0f);
-            if (PAIRED) place_by_pairs(number, frame, to_entry, inner);
+            if (PAIRED)
+                place_by_pairs(number, row0, row1, row2, !crushes, frame, to_entry, inner);
+            inner.origin += moved;
             // As long as before in a similarity, longer in others.
             inner.direction = frame.direction;
             if (!EVEN || is_shape)
                 inner.direction = stretch * vec3(dot(xyz_of(row0), frame.direction), dot(xyz_of(row1), frame.direction),
                                                  dot(xyz_of(row2), frame.direction));
             inner.unit = frame.unit * stretch;
+            float slope = 0.0f; // the sine of the angle at which the ray meets what is crushed
+            if (crushes) {
+                const float growth = length(inner.direction);
+                inner.direction /= growth;
+                inner.unit = max(inner.unit / growth, 1e-30f);
+                slope = growth / stretch * crushing.thickness / length(frame.direction);
+            }
             inner.base = frame.base + to_entry * frame.unit;
             inner.scale = frame.scale * stretch;
             inner.part = number;
             inner.waiting = later;
             inner.steps = frame.steps == NONE ? NONE : frame.steps - levels;
             inner.cut = false;
-            inner.faint = frame.faint;
+            inner.faint = frame.faint || (crushes && crushing.to_line);
             inner.margin = vec3(0.0f);
             const float inner_per_unit = 1.0f / inner.unit;
             // The surface to meet, if there is one: a primitive, or the ball that stands for what is cut.
@@ -150,12 +185,19 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             uint surface = kind;
             mat3 squeezed = mat3(1.0f);
             if (is_shape) {
-                widened = FAINTS && frame.faint && kind != KIND_PLANE;
+                widened = FAINTS && (inner.faint || is_wide) && kind != KIND_PLANE;
                 if (widened) {
-                    // About its middle, in the frame that it is drawn in.
-                    const vec4 whole = parts(frame.part * PART_SIZE + 4u);
+                    // About the middle of the frame that it is drawn in, or of what is crushed.
+                    vec4 whole = parts(frame.part * PART_SIZE + 4u);
+                    float thickest = FAR;
+                    if (CRUSHES && !inner.faint) {
+                        const mat3 own = inverse_of_part(number);
+                        const float norm = largest_stretch(spaces[at] * own);
+                        whole = vec4(own * xyz_of(ball) + origin_of(number), norm * ball.w);
+                        thickest = THICKEST_CRUSHED * frame.scale * norm;
+                    }
                     const vec3 place = place_of(xyz_of(whole), frame, at, origin, direction);
-                    const float width = least_half_width(place, frame.scale * whole.w);
+                    const float width = min(least_half_width(place, frame.scale * whole.w), thickest);
                     squeezed = squeezing(to_world(at, frame.scale, xyz_of(row0), xyz_of(row1), xyz_of(row2)),
                                          width / nodes(node + NODE_LOOK).w);
                     const vec3 centre = xyz_of(ball);
@@ -172,7 +214,10 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 const bool small = hurries || detail <= node_facts.x;
                 inner.cut = ((marks.y & NODE_UNENDING) != 0u && inner.steps == 0u) || (node_facts.x > 0.0f && small);
                 uint tree = inner.cut ? marks.w : marks.z;
-                if (!inner.cut && !hurries) {
+                const bool is_beside = FAINTS &&
+                                       passes_beside(xyz_of(ball), radius + scene.widths.y * least_half_width(place, -2.0f * radius),
+                                                     inner, at + 1, direction);
+                if (!inner.cut && !hurries && !was_crushed) {
                     const uvec4 cells = bits_of(nodes(node + NODE_CELLS));
                     for (uint i = cells.x; i < cells.x + cells.y; ++i) {
                         const vec4 cell = nodes(i);
@@ -185,17 +230,23 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 }
                 if (inner.cut && tree != NONE && (marks.y & NODE_FAINT) != 0u && !inner.faint)
                     inner.faint = detail <= 1.0f;
-                if (FAINTS && (marks.y & NODE_WIDENS) != 0u)
+                if (FAINTS && ((marks.y & NODE_WIDENS) != 0u || is_wide))
                     inner.margin = scene.widths.y * least_half_width(place, -2.0f * radius) / inner.scale *
                                    (STRETCHED ? extents_of_ball(spaces[at + 1]) : vec3(1.0f));
-                if (tree != NONE) {
+                if (tree != NONE && !is_beside) {
                     entry = tree;
                     entry_t = inner.base;
                     is_new = true;
+                    if (is_wide) wide_from = min(wide_from, at + 1);
+                    if (crushes && !was_crushed) {
+                        // Thousands of parts may lie there, all of them as wide.
+                        crushed_enough = inner.base - (1.0f - NEAR_ENOUGH_SHARE) * least_half_width(place, 0.0f) / max(slope, 1e-6f);
+                        crushed_later = later;
+                    }
                     ++at;
                     keep(at, inner);
                     frame = inner;
-                } else if (inner.cut) {
+                } else if (inner.cut && !is_beside) {
                     meets = true;
                     is_proxy = true;
                     surface = KIND_SPHERE;
@@ -205,10 +256,12 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                              dot(xyz_of(proxy2), inner.origin) + proxy2.w);
                     d = vec3(dot(xyz_of(proxy0), inner.direction), dot(xyz_of(proxy1), inner.direction),
                              dot(xyz_of(proxy2), inner.direction));
-                    widened = FAINTS && (inner.faint || (marks.y & NODE_FAINT) != 0u);
+                    const bool is_faint = inner.faint || (marks.y & NODE_FAINT) != 0u;
+                    widened = FAINTS && (is_faint || is_wide);
                     if (widened) {
+                        const float width = least_half_width(place, radius);
                         squeezed = squeezing(to_world(at + 1, inner.scale, xyz_of(proxy0), xyz_of(proxy1), xyz_of(proxy2)),
-                                             least_half_width(place, radius));
+                                             is_faint ? width : min(width, THICKEST_CRUSHED * radius));
                         o = squeezed * o;
                         d = squeezed * d;
                     }
@@ -232,13 +285,24 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 }
                 if (met) {
                     hit.t = inner.base + t * inner.unit;
-                    if (widened) normal = squeezed * normal;
+                    if (widened) normal = normal * squeezed;
                     if (is_proxy)
                         normal = rows_transposed(nodes(node + NODE_PROXY), nodes(node + NODE_PROXY + 1u),
                                                  nodes(node + NODE_PROXY + 2u), normal);
                     meeting.last = is_proxy ? at + 1 : at;
                     meeting.part = number;
                     meeting.is_proxy = is_proxy;
+                    meeting.crushed = is_crushed;
+                    if (CRUSHES && meeting.crushed) {
+                        normal = is_proxy ? normal_in_world(spaces[at + 1], normal)
+                                          : normal_in_world(spaces[at], rows_transposed(row0, row1, row2, normal));
+                        if (SHEETS) {
+                            mat3 leaf = is_proxy ? inner.scale * spaces[at + 1] * map_from_proxy(node)
+                                                 : to_world(at, frame.scale, xyz_of(row0), xyz_of(row1), xyz_of(row2));
+                            if (widened) leaf = leaf * inverse(squeezed);
+                            meeting.to_far_side = to_far_side(leaf, node, is_proxy, true, direction);
+                        }
+                    }
                     meeting.normal = normal;
                     meeting.site = site;
                     meeting.scale = frame.scale;
@@ -254,7 +318,11 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             // A pattern's is the scale of frames that the walk may leave.
             if (PATTERNS) hit.pattern_size = meeting.is_proxy ? 0.0f : pattern_size_of(meeting);
         }
-        if (FAINTS && found && (hit.t <= plenty || (hit.t <= enough && float(visits) > scene.plane_parts.w))) break;
+        if (CRUSHES && found && hit.t <= crushed_enough && visits > PATIENCE) {
+            entry = NONE;
+            later = crushed_later;
+        }
+        if (FAINTS && found && (hit.t <= plenty || (hit.t <= enough && visits > PATIENCE))) break;
         if (visits > scene.visits.x) {
             // What is left is drawn as coarsely as may be, then not at all.
             if (hurries || found) break;
@@ -276,6 +344,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 while (later < int(frame_marks[at].w));
                 frame = kept(at, direction);
                 is_new = true;
+                if (later < crushed_later) crushed_enough = -FAR;
+                if (at < wide_from) wide_from = MOST_FRAMES;
             }
         }
         if (is_new) {

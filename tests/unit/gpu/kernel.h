@@ -42,7 +42,7 @@ inline constexpr float PI = 3.14159265358979f;
 inline constexpr float FAR = 1e30f;
 inline constexpr int MOST_FRAMES = 64, MOST_LATER = 5 * MOST_FRAMES;
 inline thread_local bool STRETCHED = false, EVEN = false, FAINTS = false, PATTERNS = false, PICTURES = false,
-                         GLASS = false, MESHES = false, PAIRED = false, SHEETS = false;
+                         GLASS = false, MESHES = false, PAIRED = false, SHEETS = false, CRUSHES = false;
 inline thread_local std::uint32_t KINDS = 0;
 
 inline thread_local const FlatModel* model = nullptr;
@@ -61,6 +61,7 @@ inline void use(const FlatModel& flat) {
     GLASS = has.glassy;
     PAIRED = has.paired;
     SHEETS = has.translucent;
+    CRUSHES = has.crushed;
     KINDS = has.kinds;
     MESHES = (KINDS & (1u << KIND_MESH)) != 0;
 }

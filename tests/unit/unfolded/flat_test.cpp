@@ -168,9 +168,34 @@ TEST(FlatGraph, ANodeSaysWhereItIsCutAndWhatIsDrawnThen) {
 
 TEST(FlatGraph, IsNothingBeyondItsLimits) {
     EXPECT_FALSE(flattened(shrub(), 60, 3).flat) << "more edges than are allowed";
-    Graph flat = shrub();
-    test::place(flat, flat.root, flat.primitive(PrimitiveKind::cube), Affine::scale(Vec3(1, 0, 1)));
-    EXPECT_FALSE(flattened(flat, 60).flat) << "a map without thickness has no inverse";
+    Graph flat = test::empty_graph();
+    const ObjectId floor = flat.add({"floor", {}, {}, {}, {}});
+    test::place(flat, floor, flat.primitive(PrimitiveKind::plane), {});
+    test::place(flat, floor, flat.primitive(PrimitiveKind::cube), {});
+    test::place(flat, flat.root, floor, Affine::scale(Vec3(1, 0, 1)));
+    EXPECT_FALSE(flattened(flat).flat) << "a map without thickness places a plane";
+}
+
+TEST(FlatGraph, KeepsSingularMapsAsTheyAre) {
+    const Affine crush = Affine::rotate({1, 2, 3}, 40) * Affine::scale(Vec3(0.7, 0, 0.3));
+    Graph graph = shrub();
+    const ObjectId bush = graph.objects[graph.root].instances.front().master;
+    test::place(graph, bush, graph.primitive(PrimitiveKind::cube), crush);
+    const std::optional<FlatGraph> flat = flattened(graph, 60).flat;
+    ASSERT_TRUE(flat);
+    int crushed = 0;
+    for (const FlatNode& node : flat->nodes)
+        for (std::uint32_t i = 0; i < node.edge_count + node.stop_edge_count; ++i) {
+            const FlatEdge& edge = flat->edges[node.first_edge + i];
+            if (!edge.crushes) continue;
+            ++crushed;
+            EXPECT_EQ(node.widens, 1u);
+            const Vec3 sigma = singular_values(parent_from_child(edge).linear);
+            EXPECT_NEAR(sigma.y / sigma.x, 0.3 / 0.7, 1e-6);
+            EXPECT_NEAR(sigma.z / sigma.x, 0, 1e-12);
+        }
+    EXPECT_GT(crushed, 0);
+    EXPECT_EQ(flat->nodes[flat->root].widens, 1u);
 }
 
 TEST(FlatGraph, PlanesAndTheirHoldersHaveNoEndAndAreNeverCut) {

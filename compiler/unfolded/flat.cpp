@@ -5,6 +5,9 @@
 #include <unordered_map>
 #include <utility>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include "compiler/detail/graph/edge_cell.h"
 #include "compiler/detail/graph/piece_kind.h"
 #include "compiler/detail/least_width.h"
@@ -55,6 +58,7 @@ class Flattening {
         const Vec3 centre = frame_from_graph(node.ball.centre);
         for (int axis = 0; axis < 3; ++axis)
             flat.centre[static_cast<std::size_t>(axis)] = static_cast<float>(centre[axis]);
+        flat.reach = reach_of(node, transformed(frame_from_graph, bounds_.node[id]), centre);
         if (node.cullable && !node.primitive && !node.unbounded)
             flat.cut_detail = static_cast<float>(cut_detail(node, error_px));
         flat.frame_from_proxy = floats_of(frame_from_graph * node.node_from_proxy);
@@ -76,6 +80,15 @@ class Flattening {
                 static_cast<std::uint32_t>(flat_.edges.size()) - flat.first_edge - flat.edge_count;
         }
         flat_.nodes.push_back(flat);
+    }
+
+    /// `box` and `centre`: in the node's frame, of what it draws and of its ball.
+    static float reach_of(const DetailNode& node, const Box& box, Vec3 centre) {
+        if (node.unbounded) return flat_endless;
+        if (node.primitive) return static_cast<float>(node.ball.radius);
+        if (box.empty()) return 0;
+        constexpr double rounding = 1 + 1e-6;
+        return static_cast<float>(rounding * glm::length(glm::max(box.max - centre, centre - box.min)));
     }
 
     /// Parts that are drawn wider than they are make what holds them wider, too.

@@ -63,6 +63,7 @@ struct FlatNode {
     std::uint32_t terminal = 0;    ///< 1: below the stop edges, what names no material inherits `mean`
     std::array<float, 3> centre{}; ///< of the ball that decides how large it is, in its frame
     float diameter = 0;            ///< likewise
+    float reach = 0;               ///< from there to all that it draws
     float cut_detail = 0;          ///< detail of the diameter from which down it is cut; 0: never
     std::array<float, 12> frame_from_proxy{}; ///< places the unit sphere: by columns, the translation last
     Paint mean, proxy;                        ///< colours from afar

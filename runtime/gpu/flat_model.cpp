@@ -168,7 +168,8 @@ class Flattener {
         flat_.nodes.push_back(of_paint(node.mean));
         flat_.nodes.push_back(node.primitive == flat_none ? of_paint(node.proxy)
                                                           : extents(graph_.primitives[node.primitive]));
-        flat_.nodes.emplace_back(flat_bits(material_number(node.finish)), repeats_u, shape, inner_radius);
+        flat_.nodes.emplace_back(flat_bits(material_number(node.finish)),
+                                 node.primitive == flat_none ? node.reach : repeats_u, shape, inner_radius);
         flat_.nodes.emplace_back(0);
     }
 

@@ -41,9 +41,9 @@
 #define NODE_PROXY 2u   // three rows of proxy_from_node
 #define NODE_MEAN 5u    // the mean colour: what is fixed, and how much is open
 #define NODE_STANDIN 6u // likewise, of its proxy; of a primitive half of its extents, and w: 1 if it is bounded
-#define NODE_LOOK 7u    // the proxy's material, nothing, the radius at the end of what tapers, of a primitive the
-                        // radius of the largest ball in it; of a mesh 1 where its material says how many
-                        // pictures lie along u, and likewise v
+#define NODE_LOOK 7u    // the proxy's material, how far what it draws reaches from the ball's centre, the radius at the end
+                        // of what tapers, of a primitive the radius of the largest ball in it; of a mesh 1 where its
+                        // material says how many pictures lie along u, and likewise v
 #define NODE_CELLS 8u   // where its cells of several levels begin in nodes[], the deepest first, and how many there are; of
                         // each FlatCell the least size, the reach, the tree, the least steps
 

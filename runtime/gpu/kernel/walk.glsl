@@ -208,15 +208,16 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 if (STRETCHED)
                     inner.scale =
                         place_space(at, frame.scale, xyz_of(row0), xyz_of(row1), xyz_of(row2), stretch);
-                const float radius = inner.scale * ball.w;
+                const float radius = inner.scale * nodes(node + NODE_LOOK).y;
                 const vec3 place = place_of(xyz_of(ball), inner, at + 1, origin, direction);
                 const float detail = 2.0f * radius * detail_per_unit(place, radius);
                 const bool small = hurries || detail <= node_facts.x;
                 inner.cut = ((marks.y & NODE_UNENDING) != 0u && inner.steps == 0u) || (node_facts.x > 0.0f && small);
                 uint tree = inner.cut ? marks.w : marks.z;
-                const bool is_beside = FAINTS &&
-                                       passes_beside(xyz_of(ball), radius + scene.widths.y * least_half_width(place, -2.0f * radius),
-                                                     inner, at + 1, direction);
+                const bool is_beside =
+                    FAINTS && (marks.y & NODE_PRIMITIVE) == 0u &&
+                    passes_beside(xyz_of(ball), inner.scale * nodes(node + NODE_LOOK).y + scene.widths.y * least_half_width(place, -2.0f * radius),
+                                  inner, at + 1, direction);
                 if (!inner.cut && !hurries && !was_crushed) {
                     const uvec4 cells = bits_of(nodes(node + NODE_CELLS));
                     for (uint i = cells.x; i < cells.x + cells.y; ++i) {

@@ -172,6 +172,21 @@ TEST(GpuKernel, MeetsDustAsItIsDrawn) {
         }
 }
 
+TEST(GpuKernel, MeetsTerminalsThatReachOutOfTheirDust) {
+    Graph graph = test::tetrahedron(0.4);
+    const ObjectId self = graph.objects[graph.root].instances[0].master;
+    graph.objects[self].terminal = Instance{graph.primitive(PrimitiveKind::cube),
+                                            Affine::translate({4, 1, 0}) * Affine::scale(Vec3(2)),
+                                            {},
+                                            {},
+                                            {}};
+    DetailOptions options;
+    options.steps = 2;
+    const Comparison seen = compare(*test::traced(graph, options), 4000, 23);
+    EXPECT_GT(seen.hits, 50);
+    EXPECT_LE(seen.differ, 4);
+}
+
 TEST(GpuKernel, MeetsAllShapes) {
     DetailOptions options;
     const auto model = test::traced(all_shapes(), options);

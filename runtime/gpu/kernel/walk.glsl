@@ -117,7 +117,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 if (CRUSHES && meeting.crushed) {
                     meeting.normal = normal_in_world(spaces[at], normal);
                     if (SHEETS)
-                        meeting.to_far_side = to_far_side(frame.scale * spaces[at], node_of(frame.part) * NODE_SIZE, false, true, direction);
+                        meeting.to_far_side =
+                            to_far_side(frame.scale * spaces[at], node_of(frame.part) * NODE_SIZE, false, true, direction);
                 }
             }
             entry = NONE;
@@ -208,16 +209,16 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 if (STRETCHED)
                     inner.scale =
                         place_space(at, frame.scale, xyz_of(row0), xyz_of(row1), xyz_of(row2), stretch);
-                const float radius = inner.scale * nodes(node + NODE_LOOK).y;
+                const float radius = inner.scale * ball.w;
                 const vec3 place = place_of(xyz_of(ball), inner, at + 1, origin, direction);
                 const float detail = 2.0f * radius * detail_per_unit(place, radius);
                 const bool small = hurries || detail <= node_facts.x;
                 inner.cut = ((marks.y & NODE_UNENDING) != 0u && inner.steps == 0u) || (node_facts.x > 0.0f && small);
                 uint tree = inner.cut ? marks.w : marks.z;
+                const float widest = FAINTS ? scene.widths.y * least_half_width(place, -2.0f * radius) : 0.0f;
                 const bool is_beside =
                     FAINTS && (marks.y & NODE_PRIMITIVE) == 0u &&
-                    passes_beside(xyz_of(ball), inner.scale * nodes(node + NODE_LOOK).y + scene.widths.y * least_half_width(place, -2.0f * radius),
-                                  inner, at + 1, direction);
+                    passes_beside(xyz_of(ball), inner.scale * nodes(node + NODE_LOOK).y + widest, inner, at + 1, direction);
                 if (!inner.cut && !hurries && !was_crushed) {
                     const uvec4 cells = bits_of(nodes(node + NODE_CELLS));
                     for (uint i = cells.x; i < cells.x + cells.y; ++i) {
@@ -232,8 +233,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 if (inner.cut && tree != NONE && (marks.y & NODE_FAINT) != 0u && !inner.faint)
                     inner.faint = detail <= 1.0f;
                 if (FAINTS && ((marks.y & NODE_WIDENS) != 0u || is_wide))
-                    inner.margin = scene.widths.y * least_half_width(place, -2.0f * radius) / inner.scale *
-                                   (STRETCHED ? extents_of_ball(spaces[at + 1]) : vec3(1.0f));
+                    inner.margin =
+                        widest / inner.scale * (STRETCHED ? extents_of_ball(spaces[at + 1]) : vec3(1.0f));
                 if (tree != NONE && !is_beside) {
                     entry = tree;
                     entry_t = inner.base;
@@ -241,7 +242,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     if (is_wide) wide_from = min(wide_from, at + 1);
                     if (crushes && !was_crushed) {
                         // Thousands of parts may lie there, all of them as wide.
-                        crushed_enough = inner.base - (1.0f - NEAR_ENOUGH_SHARE) * least_half_width(place, 0.0f) / max(slope, 1e-6f);
+                        crushed_enough = inner.base - (1.0f - NEAR_ENOUGH_SHARE) * least_half_width(place, 0.0f) /
+                                                          max(slope, 1e-6f);
                         crushed_later = later;
                     }
                     ++at;

@@ -116,9 +116,10 @@ class Flattening {
     void add_edge(const DetailEdge& edge, const Affine& frame_from_graph, const Box& box) {
         const Affine& graph_from_child = graph_from_frame_[edge.child];
         const Affine parent_from_child = frame_from_graph * edge.node_from_child * graph_from_child;
-        const bool crushes = is_singular(parent_from_child, flattest_placement);
-        fits_ = fits_ && !(crushes && cut_.nodes[edge.child].unbounded);
+        const bool endless = cut_.nodes[edge.child].unbounded;
+        fits_ = fits_ && !(endless && is_singular(parent_from_child));
         if (!fits_) return;
+        const bool crushes = !endless && is_singular(parent_from_child, flattest_placement);
         FlatEdge flat;
         flat.child = edge.child;
         flat.crushes = crushes;

@@ -235,9 +235,8 @@ class Flattener {
 /// Parts of the model that no array of the kernel holds.
 std::string lack(const FlatRequest& request) {
     if (request.textures.of_ground) return "a picture on the ground";
-    for (const DetailNode& node : request.prepared.cut.nodes) {
-        if (node.is_combined()) return "an intersection or a difference";
-    }
+    if (std::ranges::any_of(request.prepared.cut.nodes, &DetailNode::is_combined))
+        return "an intersection or a difference";
     if (request.detail.error_px > SelfShadows::lit_as_px)
         return "parts culled that are larger than half a pixel";
     if (request.limits.list || request.view.lights.size() > MOST_LAMPS) return "a long list of lights";

@@ -174,6 +174,8 @@ TEST(FlatGraph, IsNothingBeyondItsLimits) {
     test::place(flat, floor, flat.primitive(PrimitiveKind::cube), {});
     test::place(flat, flat.root, floor, Affine::scale(Vec3(1, 0, 1)));
     EXPECT_FALSE(flattened(flat).flat) << "a map without thickness places a plane";
+    flat.objects[flat.root].instances.front().parent_from_child = Affine::scale(Vec3(1000, 1e-4, 1000));
+    EXPECT_TRUE(flattened(flat).flat) << "this one has some";
 }
 
 TEST(FlatGraph, KeepsSingularMapsAsTheyAre) {

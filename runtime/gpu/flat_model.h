@@ -36,7 +36,7 @@ struct FlatModel {
         bool glassy = false;      ///< some material lets light through
         bool translucent = false; ///< some material scatters light to its other side
         bool paired = false;     ///< the view shows parts of the root that are too small for single precision
-        bool crushed = false;    ///< some part is placed by a singular map
+        bool crushed = false;    ///< some part is flat, or may become so in a cycle
         std::uint32_t kinds = 0; ///< of primitives that rays meet as they are: a bit each
     } features;
     kernel_layout::Scene scene{};

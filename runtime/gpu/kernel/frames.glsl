@@ -239,9 +239,12 @@ vec3 place_of(vec3 point, Frame frame, int at, vec3 origin, vec3 direction) {
     return place + frame.scale * (spaces[at] * (point - frame.origin - along * frame.direction));
 }
 
-/// What the world makes of a part that is crushed there.
+/// What the world makes of a part. The ball and the size tell of any, what follows of what is crushed there.
 struct Crushing {
-    mat3 rows;       // of its map with some thickness
+    vec4 ball;       // of the part, in the frame
+    float size;      // norm of its map, likewise
+    mat3 rows;       // of that map with some thickness
+    vec3 moved;      // by which its points lie elsewhere then, so that its middle stays where it is
     float thickness; // in the frame
     bool is_wide;    // it is drawn wider than it is
     bool to_line;    // and is a line at most
@@ -252,19 +255,22 @@ bool crush(uint part, Frame frame, int at, vec3 origin, vec3 direction, OUT(Crus
     const mat3 parent_from_part = inverse_of_part(part), map = spaces[at] * parent_from_part;
     const vec3 ab = cross(map[0], map[1]), bc = cross(map[1], map[2]), ca = cross(map[2], map[0]);
     const float area = sqrt(max(max(dot(ab, ab), dot(bc, bc)), dot(ca, ca))), volume = abs(dot(map[0], bc));
+    const vec4 ball = parts(part * PART_SIZE + 4u), node_facts = parts(part * PART_SIZE + 5u);
+    const vec3 middle = parent_from_part * xyz_of(ball);
     const float size = largest_stretch(map);
+    crushing.ball = vec4(middle + origin_of(part), size * ball.w);
+    crushing.size = size;
     if (area > CRUSHED * size * size && volume > CRUSHED * area * size) return false;
     crushing.to_line = !(area > SINGULAR * size * size);
     crushing.is_wide = crushing.to_line || !(volume > SINGULAR * area * size);
-    const vec4 ball = parts(part * PART_SIZE + 4u), node_facts = parts(part * PART_SIZE + 5u);
-    const vec3 middle =
-        place_of(parent_from_part * xyz_of(ball) + origin_of(part), frame, at, origin, direction);
-    const float half_width = least_half_width(middle, frame.scale * size * ball.w) / frame.scale;
+    const vec3 place = place_of(xyz_of(crushing.ball), frame, at, origin, direction);
+    const float half_width = least_half_width(place, frame.scale * crushing.ball.w) / frame.scale;
     const float thickness = half_width > 0.0f ? min(half_width, THICKEST_CRUSHED * size) : THICKNESS_UNCULLED * size;
     const bool is_mesh = (bits_of(node_facts).y & NODE_KIND) == KIND_MESH;
     crushing.thickness = FAINTS && !is_mesh ? THICKNESS_INSIDE * thickness
                                             : thickness / nodes(node_of(part) * NODE_SIZE + NODE_LOOK).w;
     crushing.rows = transpose(raised_inverse(map, CRUSHED * size, crushing.thickness) * spaces[at]);
+    crushing.moved = xyz_of(ball) - middle * crushing.rows;
     return true;
 }
 

@@ -136,7 +136,6 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             const bool is_shape = (marks.y & NODE_PRIMITIVE) != 0u && kind != KIND_MESH;
             float to_entry = max((entry_t - frame.base) * per_unit, 0.0f);
             vec3 from = frame.origin + to_entry * frame.direction - vec3(row0.w, row1.w, row2.w);
-            vec3 moved = vec3(0.0f); // its middle stays where it is
             Crushing crushing;
             const bool crushes = CRUSHES && at > 0 && crush(number, frame, at, origin, direction, crushing);
             if (crushes) {
@@ -144,7 +143,6 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                 row0 = vec4(rows[0], row0.w);
                 row1 = vec4(rows[1], row1.w);
                 row2 = vec4(rows[2], row2.w);
-                moved = xyz_of(ball) - inverse_of_part(number) * xyz_of(ball) * rows;
                 // Nearest to the middle of what is crushed, its numbers are small.
                 const vec3 way = frame.direction * rows;
                 to_entry -= dot(from * rows, way) / dot(way, way);
@@ -155,9 +153,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             Frame inner;
             inner.origin = vec3(dot(xyz_of(row0), from), dot(xyz_of(row1), from), dot(xyz_of(row2), from));
             inner.low = vec3(0.0f);
-            if (PAIRED)
-                place_by_pairs(number, row0, row1, row2, !crushes, frame, to_entry, inner);
-            inner.origin += moved;
+            if (PAIRED) place_by_pairs(number, row0, row1, row2, !crushes, frame, to_entry, inner);
             // As long as before in a similarity, longer in others.
             inner.direction = frame.direction;
             if (!EVEN || is_shape)
@@ -166,6 +162,7 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
             inner.unit = frame.unit * stretch;
             float slope = 0.0f; // the sine of the angle at which the ray meets what is crushed
             if (crushes) {
+                inner.origin += crushing.moved;
                 const float growth = length(inner.direction);
                 inner.direction /= growth;
                 inner.unit = max(inner.unit / growth, 1e-30f);
@@ -192,10 +189,8 @@ bool walk(vec3 origin, vec3 direction, float least, float most, bool any, INOUT(
                     vec4 whole = parts(frame.part * PART_SIZE + 4u);
                     float thickest = FAR;
                     if (CRUSHES && !inner.faint) {
-                        const mat3 own = inverse_of_part(number);
-                        const float norm = largest_stretch(spaces[at] * own);
-                        whole = vec4(own * xyz_of(ball) + origin_of(number), norm * ball.w);
-                        thickest = THICKEST_CRUSHED * frame.scale * norm;
+                        whole = crushing.ball;
+                        thickest = THICKEST_CRUSHED * frame.scale * crushing.size;
                     }
                     const vec3 place = place_of(xyz_of(whole), frame, at, origin, direction);
                     const float width = min(least_half_width(place, frame.scale * whole.w), thickest);
